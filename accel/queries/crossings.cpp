@@ -14,7 +14,7 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
   const bool together = ListRoom<float>::goes_together(maker, max_rays);
   Scratch memory(ActiveRays<RaySource>::bytes(rays, max_rays) + Scratch::bytes_of<CrossingCount>(max_rays));
   ActiveRays active(rays, max_rays, memory);
-  Array<Hit> list(together ? 0 : room_for_counts);
+  Array<ListEntryOf<float>> list(together ? 0 : room_for_counts);
   Array<std::byte> scratch(together ? maker.kernels.scratch_bytes(max_rays, room_for_counts) : 0);
   ListBatch batch;
   batch.kind = maker.kind, batch.list = list.data(), batch.room = room_for_counts;

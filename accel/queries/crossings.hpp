@@ -8,10 +8,10 @@ namespace raylanes {
 // AnyCrossing is Crossing, or CrossingD for doubles.
 template <class AnyCrossing, class T, class Tree>
 RayLists<AnyCrossing> crossings_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
-  return lists_of<AnyCrossing>("crossings", ListKind::crossings, tree, rays, options,
-                               [](const HitOf<T>& crossing) {
-                                 return AnyCrossing{crossing.t, crossing.primitive, crossing.u > 0 ? 1 : -1};
-                               });
+  return lists_of<AnyCrossing, ListEntryOf<T>>("crossings", ListKind::crossings, tree, rays, options,
+                                               [](const ListEntryOf<T>& entry) {
+                                                 return AnyCrossing{entry.t, entry.primitive, entry.side};
+                                               });
 }
 
 // Counts of rays from begin to end in a tree that has each triangle in one leaf, without lists.
@@ -29,12 +29,11 @@ void count_crossings_of(const Tree& tree, const RaySourceOf<T>& rays, std::span<
   over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     if constexpr (is_float<T>)
       if (!maker.has_parts) return count_in_kernels(maker, rays, begin, end, counters, counts);
-    each_list(maker, rays, begin, end, counters, [&](std::size_t i, std::span<HitOf<T>> list) {
-      CrossingCount count;
-      for (const HitOf<T>& crossing : maker.has_parts ? distinct(list) : list)
-        ++count.crossings, count.winding += crossing.t > 0 ? 1 : -1;
-      counts[i] = count;
-    });
+    each_list<ListEntryOf<T>>(maker, rays, begin, end, counters,
+                              [&](std::size_t i, std::span<ListEntryOf<T>> list) {
+                                if (maker.has_parts) list = distinct(list);
+                                counts[i] = {static_cast<std::uint32_t>(list.size()), sum_of_sides<T>(list)};
+                              });
   });
 }
 

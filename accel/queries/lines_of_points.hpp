@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "../../dispatch/bits.hpp"
 #include "../batch/ray_source.hpp"
+#include "lists.hpp"
 
 namespace raylanes {
 
@@ -76,27 +78,27 @@ class LineRays {
 };
 
 // A stretch of a line between two crossings, or between one and an end of the box: the points with after < x < before,
-// all of which are in one place.
-template <class T, class Place>
+// all of which have the same crossings in front of them.
+template <class T>
 struct Stretch {
   T after, before;
-  Place place;
+  std::int32_t crossings;  // their sum_of_sides()
 };
 
 // The stretches of a line whose ray begins at `begin`, with crossings in the order of t. Between two of them are the
 // points that may be at a crossing, or none.
-template <class T, class Place, class PlaceBehind>
-void find_stretches(std::span<const HitOf<T>> crossings, T begin, T lo, T hi,
-                    std::vector<Stretch<T, Place>>& stretches, PlaceBehind place_behind) {
+template <class T>
+void find_stretches(std::span<const ListEntryOf<T>> crossings, T begin, T lo, T hi,
+                    std::vector<Stretch<T>>& stretches) {
   stretches.clear();
   T after = number_below(lo);
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    const double t = crossings[i].t, error = t * LineBounds<T>::of_t, position = begin + t;
-    stretches.push_back(
-        {after, number_below(static_cast<T>(position - error)), place_behind(crossings.subspan(i))});
-    after = number_above(static_cast<T>(position + error));
+  std::int32_t in_front = sum_of_sides(crossings);
+  for (const ListEntryOf<T>& crossing : crossings) {
+    const double t = crossing.t, error = t * LineBounds<T>::of_t, position = begin + t;
+    stretches.push_back({after, number_below(static_cast<T>(position - error)), in_front});
+    after = number_above(static_cast<T>(position + error)), in_front -= crossing.side;
   }
-  stretches.push_back({after, number_above(hi), place_behind(crossings.last(0))});
+  stretches.push_back({after, number_above(hi), in_front});
 }
 
 }  // namespace raylanes

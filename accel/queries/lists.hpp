@@ -37,6 +37,7 @@ struct ListMaker {
   Facing facing;
   bool has_parts;  // as in TracedTree
   const Progress* progress;
+  ListStop stop = ListStop::never;
 };
 
 // The kernels that the options ask for. Throws as TriangleTree::closest() does, and as BvhD::all_hits().
@@ -107,7 +108,7 @@ class ListRoom {
   std::size_t make(ListBatchOf<T> batch) {
     if (wanted_room_ > room_) room_ = wanted_room_, take();
     batch.size = std::min(batch.size, rays_of_next_call_);
-    batch.list = list_.data(), batch.room = room_;
+    batch.list = list_.data(), batch.hits = hits_.data(), batch.room = room_;
     batch.scratch = scratch_.data();
     const std::size_t done = kernel()(maker_.tree, batch);
     if (done == 0)
@@ -116,13 +117,21 @@ class ListRoom {
       learn(done, batch.end[done - 1]);
     return done;
   }
-  HitOf<T>* list() { return list_.data(); }
+  // Entry is HitOf<T> in lists of hits.
+  template <class Entry>
+  Entry* list() {
+    if constexpr (std::is_same_v<Entry, HitOf<T>>)
+      return hits_.data();
+    else
+      return list_.data();
+  }
 
  private:
-  // The bytes of an entry of the list and of the heap.
-  static constexpr std::size_t bytes_of_entry = sizeof(HitOf<T>) + 3 * sizeof(std::uint32_t),
-                               max_room = (std::size_t{32} << 20) / bytes_of_entry;
-
+  // For the entries, of the list and of the heap, and their hits.
+  std::size_t max_room() const {
+    const std::size_t of_hit = maker_.kind == ListKind::hits ? sizeof(HitOf<T>) : 0;
+    return (std::size_t{32} << 20) / (sizeof(ListEntryOf<T>) + of_hit + 3 * sizeof(std::uint32_t));
+  }
   auto kernel() const {
     const QueryKernelsOf<T>& kernels = maker_.kernels;
     if constexpr (is_float<T>)
@@ -135,7 +144,7 @@ class ListRoom {
   void make_more(std::size_t rays) {
     if (together_ && rays > rays_of_a_sample)
       rays_of_next_call_ = rays_of_a_sample;
-    else if (together_ && rays > 1 && 2 * room_ > max_room)
+    else if (together_ && rays > 1 && 2 * room_ > max_room())
       rays_of_next_call_ = rays / 2;
     else
       wanted_room_ = 2 * room_;
@@ -143,22 +152,21 @@ class ListRoom {
   // After some rays with so many entries.
   void learn(std::size_t rays, std::size_t entries) {
     const double each = 1.25 * static_cast<double>(entries + 1) / static_cast<double>(rays),
-                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(max_room));
+                 wanted = std::min(each * static_cast<double>(rays_), static_cast<double>(max_room()));
     wanted_room_ = static_cast<std::size_t>(wanted);
     const double fit = static_cast<double>(std::max(room_, wanted_room_)) / each;
     rays_of_next_call_ = static_cast<std::size_t>(std::clamp(fit, 1.0, static_cast<double>(rays_)));
   }
-  static bool go_along_axes(const ListMaker<T>& maker) {
-    return maker.kind == ListKind::places || maker.kind == ListKind::lines;
-  }
+  static bool go_along_axes(const ListMaker<T>& maker) { return maker.stop != ListStop::never; }
   static bool may_go_together(const ListMaker<T>& maker) {
     if constexpr (is_float<T>)
       return !go_along_axes(maker) && maker.max_count > max_alone && maker.kernels.list_together != nullptr;
     return false;
   }
   void take() {
-    list_ = {}, scratch_ = {};  // not both at once
-    list_ = Array<HitOf<T>>(room_);
+    list_ = {}, hits_ = {}, scratch_ = {};  // not both at once
+    list_ = Array<ListEntryOf<T>>(room_);
+    if (maker_.kind == ListKind::hits) hits_ = Array<HitOf<T>>(room_);
     if constexpr (is_float<T>)
       if (together_) scratch_ = Array<std::byte>(maker_.kernels.scratch_bytes(rays_, room_));
   }
@@ -168,19 +176,22 @@ class ListRoom {
   bool together_;
   std::size_t room_, wanted_room_ = 0;
   std::size_t rays_of_next_call_;
-  Array<HitOf<T>> list_;
+  Array<ListEntryOf<T>> list_;
+  Array<HitOf<T>> hits_;
   Array<std::byte> scratch_;
 };
 
 // Calls take(i, list) for each active ray from begin to end, in order; the list, as the kernel made it, may be changed.
-template <class T, class Rays, class Take>
+// Entry is HitOf<T> for lists of hits.
+template <class Entry, class T, class Rays, class Take>
 void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, std::size_t end,
                TraceCounters* counters, const Take& take) {
   const std::size_t most = ListRoom<T>::rays_of_a_call(maker, end - begin);
   Scratch scratch(ActiveRays<Rays>::bytes(rays, most) + Scratch::bytes_of<std::size_t>(most));
   ActiveRays active(rays, most, scratch);
   ListBatchOf<T> batch;
-  batch.kind = maker.kind, batch.max_count = maker.max_count, batch.counters = counters;
+  batch.kind = maker.kind, batch.stop = maker.stop, batch.max_count = maker.max_count,
+  batch.counters = counters;
   batch.facing = maker.facing;
   batch.end = scratch.take<std::size_t>(most);
   ListRoom<T> room(maker, most);
@@ -192,7 +203,7 @@ void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, s
       if (active.skip != nullptr) batch.skip = active.skip + first;
       done = room.make(batch);
       for (std::size_t i = 0, at = 0; i < done; at = batch.end[i++])
-        take(active.indices[first + i], std::span<HitOf<T>>(room.list() + at, batch.end[i] - at));
+        take(active.indices[first + i], std::span(room.template list<Entry>() + at, batch.end[i] - at));
     }
   }
 }
@@ -204,24 +215,33 @@ BatchPlan plan_of(const ListMaker<T>& maker) {
 }
 
 // Sorted, each primitive once: entries of one primitive are equal.
-template <class AnyHit, class Less>
-std::span<AnyHit> each_once(std::span<AnyHit> list, Less less) {
+template <class Entry, class Less>
+std::span<Entry> each_once(std::span<Entry> list, Less less) {
   std::sort(list.begin(), list.end(), less);
   const auto end = std::unique(list.begin(), list.end(),
-                               [](const AnyHit& a, const AnyHit& b) { return a.primitive == b.primitive; });
+                               [](const Entry& a, const Entry& b) { return a.primitive == b.primitive; });
   return list.first(static_cast<std::size_t>(end - list.begin()));
 }
 // In the order of t and then of primitives.
-template <class AnyHit>
-std::span<AnyHit> in_order(std::span<AnyHit> list) {
-  return each_once(list, [](const AnyHit& a, const AnyHit& b) {
+template <class Entry>
+std::span<Entry> in_order(std::span<Entry> list) {
+  return each_once(list, [](const Entry& a, const Entry& b) {
     return a.t < b.t || (a.t == b.t && a.primitive < b.primitive);
   });
 }
 // In any order.
-template <class AnyHit>
-std::span<AnyHit> distinct(std::span<AnyHit> list) {
-  return each_once(list, [](const AnyHit& a, const AnyHit& b) { return a.primitive < b.primitive; });
+template <class Entry>
+std::span<Entry> distinct(std::span<Entry> list) {
+  return each_once(list, [](const Entry& a, const Entry& b) { return a.primitive < b.primitive; });
+}
+
+// How often crossings leave, less how often they enter.
+template <class T>
+std::int32_t sum_of_sides(std::span<const ListEntryOf<T>> crossings) {
+  if (crossings.size() == 1) return crossings[0].side;  // as most lists
+  std::int32_t sum = 0;
+  for (const ListEntryOf<T>& crossing : crossings) sum += crossing.side;
+  return sum;
 }
 
 // Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
@@ -238,7 +258,7 @@ template <class Item>
   wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
 }
 
-// The lists of n rays in order, of what item(hit) makes of each entry, at most `max_count` a ray. Parts that threads
+// The lists of n rays in order, of what item(entry) makes of each entry, at most `max_count` a ray. Parts that threads
 // made are joined at the end. each(begin, end, counters, take) calls take(i, list) for active rays in order.
 template <class Item, class Each, class Of>
 RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count,
@@ -265,7 +285,7 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
       if (list.size() > max_count) list = list.first(max_count);
       if (part.items.capacity() - part.items.size() < list.size())
         make_room(part.items, list.size(), i - part.begin, foretold);
-      for (const auto& hit : list) part.items.push_back(item(hit));
+      for (const auto& entry : list) part.items.push_back(item(entry));
       lists.offsets[i + 1] = list.size();
     });
     const std::lock_guard<std::mutex> one_at_a_time(joining);
@@ -279,7 +299,7 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
   for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
   return lists;
 }
-template <class Item, class T, class Tree, class Of>
+template <class Item, class Entry, class T, class Tree, class Of>
 RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
                         const ListOptions& options, const Of& item) {
   require_rays(call, rays);
@@ -288,14 +308,14 @@ RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const
   return collected_lists<Item>(
       plan_of(maker), rays.size(), maker.max_count,
       [&](std::size_t begin, std::size_t end, TraceCounters* counters, const auto& take) {
-        each_list(maker, rays, begin, end, counters, take);
+        each_list<Entry>(maker, rays, begin, end, counters, take);
       },
       item);
 }
 template <class T, class Tree>
 RayLists<HitOf<T>> hits_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
-  return lists_of<HitOf<T>>("all_hits", ListKind::hits, tree, rays, options,
-                            [](const HitOf<T>& hit) { return hit; });
+  return lists_of<HitOf<T>, HitOf<T>>("all_hits", ListKind::hits, tree, rays, options,
+                                      [](const HitOf<T>& hit) { return hit; });
 }
 
 }  // namespace raylanes

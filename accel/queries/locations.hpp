@@ -17,23 +17,11 @@ struct RaysOfVotes : Points<T> {
   }
 };
 
-struct Locations {
-  using Place = Location;
-  static constexpr bool wants_sides = false;
-  std::span<Location> locations;
-  InsideRule rule;
-
-  static Location on() { return Location::on; }
-  template <class AnyHit, class Side>
-  Location of_crossings(std::span<const AnyHit> crossings, Side side) const {
-    const bool inside =
-        rule != InsideRule::nonzero ? crossings.size() % 2 != 0 : sum_of_sides(crossings, side) != 0;
-    return inside ? Location::inside : Location::outside;
-  }
-  void put(std::size_t point, Location location, std::size_t) { locations[point] = location; }
-  void put_outside(std::size_t point) { locations[point] = Location::outside; }
-  void finish(std::size_t, std::size_t, TraceCounters*) const {}
-};
+inline Location location_of(const PointPlace& place, InsideRule rule) {
+  if (place.is_on) return Location::on;
+  const bool inside = rule == InsideRule::nonzero ? place.crossings != 0 : (place.crossings & 1) != 0;
+  return inside ? Location::inside : Location::outside;
+}
 
 // The verdict of most of the rays of a point; `on` only if each of them says so.
 template <class T>
@@ -42,14 +30,15 @@ void locate_by_vote(const ListMaker<T>& maker, const RaysOfVotes<T>& rays, std::
   over_parts(
       plan_of(maker), locations.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
         std::size_t inside = 0;
-        each_list(maker, rays, n * begin, n * end, counters, [&](std::size_t ray, std::span<HitOf<T>> list) {
-          const Location location = place_by_own_ray(Locations{{}, InsideRule::vote}, list);
-          inside = (ray % n == 0 ? 0 : inside) + (location == Location::inside ? 1 : 0);
-          if (ray % n != n - 1) return;
-          locations[ray / n] = location == Location::on ? location
-                               : 2 * inside > n         ? Location::inside
-                                                        : Location::outside;
-        });
+        each_list<ListEntryOf<T>>(
+            maker, rays, n * begin, n * end, counters, [&](std::size_t ray, std::span<ListEntryOf<T>> list) {
+              const Location location = location_of(place_by_own_ray<T>(list, 0), InsideRule::vote);
+              inside = (ray % n == 0 ? 0 : inside) + (location == Location::inside ? 1 : 0);
+              if (ray % n != n - 1) return;
+              locations[ray / n] = location == Location::on ? location
+                                   : 2 * inside > n         ? Location::inside
+                                                            : Location::outside;
+            });
       });
 }
 
@@ -57,14 +46,19 @@ void locate_by_vote(const ListMaker<T>& maker, const RaysOfVotes<T>& rays, std::
 template <class T, class Tree>
 void locate_by_crossings(const Tree& tree, const BoxOf<T>& box, const VertexRecords<T>& points,
                          std::span<Location> locations, const LocateOptions& options) {
-  const ListMaker<T> maker = checked_maker("locate", ListKind::places, tree, options);
+  ListMaker<T> maker = checked_maker("locate", ListKind::sides, tree, options);
+  maker.stop = ListStop::at_origin;
   const QuietFloats quiet;
   const Points<T> all{points, box, options.active};
   if (options.rule == InsideRule::vote) return locate_by_vote(maker, RaysOfVotes<T>{all}, locations);
-  const PointPlaces<T, Locations> places(maker, all);
   over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    Locations part{locations, options.rule};
-    places.find(begin, end, counters, part);
+    PointPlaces<T> places(maker, all);
+    for (std::size_t size; begin < end; begin += size) {
+      size = std::min(places.at_once, end - begin);
+      const std::span<const PointPlace> found = places.find(begin, begin + size, counters);
+      for (std::size_t i = 0; i < size; ++i)
+        if (all.takes_part(begin + i)) locations[begin + i] = location_of(found[i], options.rule);
+    }
   });
 }
 

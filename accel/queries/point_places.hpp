@@ -62,25 +62,32 @@ struct Points {
   }
 };
 
-// A point whose ray goes along the axis of its line, or towards the side of the box that is nearest.
-struct PointAlone {
-  std::size_t point, axis;
+// The place of a point, as crossings have it.
+struct PointPlace {
+  std::int32_t crossings;  // of its ray, by sum_of_sides()
+  std::uint16_t side;      // that its ray goes to; outside_box: it has none, and crosses nothing
+  bool is_on;              // whether a triangle holds it; then crossings are not known
 };
-// A ray for each of them; none, of which nothing is crossed, from points outside of the box.
+inline constexpr std::uint16_t outside_box = 6;
+
+// By the list of a point's own ray, which stops at_origin.
+template <class T>
+[[gnu::always_inline]] inline PointPlace place_by_own_ray(std::span<ListEntryOf<T>> list,
+                                                          std::uint16_t side) {
+  if (!list.empty() && list.back().side == 0) return {0, side, true};
+  return {sum_of_sides<T>(list.size() < 2 ? list : distinct(list)), side, false};
+}
+
+// The rays of points that go alone, to the sides in their places. `places` begin with that of point `begin`.
 template <class T>
 struct RaysOfPoints : Points<T> {
-  std::span<const PointAlone> alone;
+  std::size_t begin;
+  std::span<const PointPlace> places;
+  std::span<const std::size_t> alone;
 
   bool takes_part(std::size_t) const { return true; }
   RayOf<T> operator[](std::size_t i) const {
-    const PointOf<T> point = this->view[alone[i].point];
-    const auto [side, inside] = side_of(alone[i], point);
-    return inside ? RayOf<T>{point, 0, directions_to_sides<T>[side]} : RayOf<T>{};
-  }
-  NearestSide side_of(const PointAlone& alone_point, const PointOf<T>& point) const {
-    NearestSide to(point, this->bounds);
-    if (alone_point.axis != no_axis && to.inside) to.side = side_along(alone_point.axis);
-    return to;
+    return {this->view[alone[i]], 0, directions_to_sides<T>[places[alone[i] - begin].side]};
   }
 };
 
@@ -97,75 +104,38 @@ struct RaysOfLines : Points<T> {
   RayOf<T> operator[](std::size_t i) const { return rays.through(this->view[lines[i].begin], lines[i].axis); }
 };
 
-// How often crossings leave, less how often they enter; side(crossing) is positive for those that leave.
-template <class AnyHit, class Side>
-std::int64_t sum_of_sides(std::span<const AnyHit> crossings, Side side) {
-  std::int64_t sum = 0;
-  for (const AnyHit& crossing : crossings) sum += side(crossing) > 0 ? 1 : -1;
-  return sum;
-}
-
-// The place of a point by the list of its own ray, as ListKind::places has it; Places as PointPlaces asks it.
-template <class Places, class AnyHit>
-[[gnu::always_inline]] inline typename Places::Place place_by_own_ray(const Places& places,
-                                                                      std::span<AnyHit> list) {
-  if (!list.empty() && list.back().t == 0) return places.on();
-  const std::span<const AnyHit> crossings = list.size() < 2 ? list : distinct(list);
-  return places.of_crossings(crossings, [](const AnyHit& crossing) { return crossing.t; });
-}
-
-// Finds the places of points by their own rays and by the rays of their lines, some points at a time, which stay in the
-// caches. Places says what a place is, one object a thread:
-//   Place                     what can be said of a point by crossings
-//   on()                      the place of a point on a triangle
-//   of_crossings(crossings, side)   the place of another point, by what is crossed in front of it; side(crossing) > 0
-//                             for those that leave
-//   wants_sides               whether put() is told the side, which locate() has no use for
-//   put(point, place, side)   called for each active point once, with the side that its ray goes to
-//   put_outside(point)        the same for a point outside the box
-//   finish(begin, end, counters)   called when the points from begin to end have their places
-template <class T, class Places>
+// Finds the places of points by their own rays and by the rays of their lines; one object a thread.
+template <class T>
 class PointPlaces {
  public:
+  // For at most so many points at a time, which stay in the caches.
+  static constexpr std::size_t at_once = 16384;
+
+  // By a maker of sides that stop at_origin.
   PointPlaces(const ListMaker<T>& maker, const Points<T>& points)
       : maker_(maker), points_(points), rays_(points.bounds) {}
 
-  void find(std::size_t begin, std::size_t end, TraceCounters* counters, Places& places) const {
-    Work work;
-    work.alone.reserve(std::min(at_once, end - begin));
-    for (std::size_t first = begin; first < end; first += at_once) {
-      work.lines.clear(), work.alone.clear();
-      const std::size_t last = std::min(end, first + at_once);
-      share_out(first, last, work);
-      by_lines(work, counters, places);
-      const RaysOfPoints<T> rays{points_, work.alone};
-      each_list(maker_, rays, 0, work.alone.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
-        const PointAlone& alone = work.alone[i];
-        if constexpr (Places::wants_sides) {
-          const auto [side, inside] = rays.side_of(alone, points_.view[alone.point]);
-          if (!inside) return places.put_outside(alone.point);
-          places.put(alone.point, place_by_own_ray(places, list), side);
-        } else {
-          places.put(alone.point, place_by_own_ray(places, list), 0);
-        }
-      });
-      places.finish(first, last, counters);
-    }
+  // The places of points from `begin` to `end`; of inactive ones anything.
+  std::span<const PointPlace> find(std::size_t begin, std::size_t end, TraceCounters* counters) {
+    begin_ = begin, lines_.clear(), alone_.clear(), places_.resize(end - begin);
+    share_out(begin, end);
+    by_lines(counters);
+    const RaysOfPoints<T> rays{points_, begin, places_, alone_};
+    each_list<ListEntryOf<T>>(maker_, rays, 0, alone_.size(), counters,
+                              [&](std::size_t i, std::span<ListEntryOf<T>> list) {
+                                PointPlace& place = places_[alone_[i] - begin];
+                                place = place_by_own_ray<T>(list, place.side);
+                              });
+    return places_;
   }
 
  private:
-  using Place = typename Places::Place;
   // The number of points from which a line is cheaper than their own rays, which are shorter.
-  static constexpr std::size_t min_in_line = 4, at_once = 16384;
-  struct Work {
-    std::vector<PointsInLine> lines;
-    std::vector<PointAlone> alone;
-    std::vector<Stretch<T, Place>> stretches;
-  };
+  static constexpr std::size_t min_in_line = 4;
 
   // A point belongs to the line that it shares with the active point before it, else to the line of the one behind it.
   // The place of a point depends on no others, so not on how threads share out the array. Inactive points are not read.
-  void share_out(std::size_t begin, std::size_t end, Work& work) const {
+  void share_out(std::size_t begin, std::size_t end) {
     const VertexRecords<T>& points = points_.view;
     std::size_t i = points_.active_from(begin);
     if (i >= end) return;
@@ -184,35 +154,36 @@ class PointPlaces {
       for (before = behind; axis != no_axis && before == axis && i < end; ++count)
         last = i, before = to_next();
       if (count >= min_in_line && rays_.serve(axis))
-        work.lines.push_back({first, last + 1, axis});
+        lines_.push_back({first, last + 1, axis});
       else
-        for (std::size_t k = first; k <= last; ++k) go_alone(k, axis, work);
+        for (std::size_t k = first; k <= last; ++k) go_alone(k, axis);
     }
   }
-  void go_alone(std::size_t i, std::size_t axis, Work& work) const {
-    if (points_.takes_part(i)) work.alone.push_back({i, axis});
+  // Its ray goes along the axis of its line, or towards the side of the box that is nearest.
+  void go_alone(std::size_t i, std::size_t axis) {
+    if (!points_.takes_part(i)) return;
+    const NearestSide to(points_.view[i], points_.bounds);
+    const std::size_t side = !to.inside ? outside_box : axis != no_axis ? side_along(axis) : to.side;
+    places_[i - begin_] = {0, static_cast<std::uint16_t>(side), false};
+    if (to.inside) alone_.push_back(i);
   }
 
   // Points that may be at a crossing go alone, and all of a line that meets what floats do not decide.
-  void by_lines(Work& work, TraceCounters* counters, Places& places) const {
+  void by_lines(TraceCounters* counters) {
     ListMaker<T> maker = maker_;
-    maker.kind = ListKind::lines;
-    const RaysOfLines<T> rays{points_, rays_, work.lines};
-    each_list(maker, rays, 0, work.lines.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
-      const PointsInLine line = work.lines[i];
-      const std::span<const HitOf<T>> crossings = in_order(list);
-      const bool is_decided = crossings.empty() || crossings.front().t > 0;
-      if (!is_decided) {
-        for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis, work);
-        return;
-      }
-      find_stretches(crossings, rays_.begin(line.axis), points_.bounds.lo[line.axis],
-                     points_.bounds.hi[line.axis], work.stretches, [&](std::span<const HitOf<T>> behind) {
-                       return places.of_crossings(behind,
-                                                  [](const HitOf<T>& crossing) { return crossing.u; });
-                     });
-      place(line, work, places);
-    });
+    maker.kind = ListKind::crossings, maker.stop = ListStop::undecided;
+    const RaysOfLines<T> rays{points_, rays_, lines_};
+    each_list<ListEntryOf<T>>(
+        maker, rays, 0, lines_.size(), counters, [&](std::size_t i, std::span<ListEntryOf<T>> list) {
+          const PointsInLine line = lines_[i];
+          if (!list.empty() && list.back().side == 0) {
+            for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis);
+            return;
+          }
+          find_stretches<T>(in_order(list), rays_.begin(line.axis), points_.bounds.lo[line.axis],
+                            points_.bounds.hi[line.axis], stretches_);
+          place(line);
+        });
   }
   // Whether the line comes to the box at all.
   bool may_meet_box(const PointsInLine& line) const {
@@ -223,32 +194,42 @@ class PointPlaces {
     return may;
   }
   // Most points are on the stretch of the one before.
-  void place(const PointsInLine& line, Work& work, Places& places) const {
-    const Stretch<T, Place>* here = work.stretches.data();
-    const bool may_be_inside = may_meet_box(line);
+  void place(const PointsInLine& line) {
+    const Stretch<T>* here = stretches_.data();
+    const auto side = static_cast<std::uint16_t>(side_along(line.axis));
+    const PointPlace outside{0, outside_box, false};
+    if (!may_meet_box(line)) {
+      std::fill(&places_[line.begin - begin_], &places_[line.end - 1 - begin_] + 1, outside);
+      return;
+    }
     const T lo = points_.bounds.lo[line.axis], hi = points_.bounds.hi[line.axis];
     for (std::size_t k = line.begin; k < line.end; ++k) {
       if (!points_.takes_part(k)) continue;
       const T x = points_.view[k][line.axis];
-      if (!may_be_inside || !(x > here->after && x < here->before)) {
-        if (!may_be_inside || !(x >= lo && x <= hi)) {  // or NaN
-          places.put_outside(k);
+      if (!(x > here->after && x < here->before)) {
+        if (!(x >= lo && x <= hi)) {  // or NaN
+          places_[k - begin_] = outside;
           continue;
         }
-        here = &*std::upper_bound(work.stretches.begin(), work.stretches.end() - 1, x,
-                                  [](T at, const Stretch<T, Place>& stretch) { return at < stretch.before; });
+        here = &*std::upper_bound(stretches_.begin(), stretches_.end() - 1, x,
+                                  [](T at, const Stretch<T>& stretch) { return at < stretch.before; });
         if (!(x > here->after && x < here->before)) {
-          go_alone(k, line.axis, work);
+          go_alone(k, line.axis);
           continue;
         }
       }
-      places.put(k, here->place, side_along(line.axis));
+      places_[k - begin_] = {here->crossings, side, false};
     }
   }
 
   const ListMaker<T>& maker_;
   const Points<T>& points_;
   LineRays<T> rays_;
+  std::size_t begin_ = 0;
+  std::vector<PointPlace> places_;
+  std::vector<PointsInLine> lines_;
+  std::vector<std::size_t> alone_;
+  std::vector<Stretch<T>> stretches_;
 };
 
 }  // namespace raylanes

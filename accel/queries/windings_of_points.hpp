@@ -23,37 +23,16 @@ inline constexpr double rounding_of_windings = 0x1p-24;
 template <class T, class Sink>
 class Windings {
  public:
-  struct Place {
-    std::int64_t winding = 0;
-    bool is_on = false;
-  };
-  static constexpr bool wants_sides = true;
-
   Windings(const ListMaker<T>& maker, const Points<T>& points, const BoundaryTree& boundary,
            const WindingKernels& kernels, const Sink& sink)
       : maker_(maker), points_(points), boundary_(boundary.view()), kernels_(kernels), sink_(sink) {}
 
-  static Place on() { return {0, true}; }
-  template <class Side>
-  Place of_crossings(std::span<const HitOf<T>> crossings, Side side) const {
-    return {sum_of_sides(crossings, side), false};
-  }
-  void put(std::size_t point, Place place, std::size_t side) {
-    if (place.is_on) on_.push_back(waiting_.size());
-    waiting_.push_back(
-        {point, static_cast<std::uint8_t>(side), place.is_on, static_cast<double>(place.winding)});
-  }
-  void put_outside(std::size_t point) {
-    const PointOf<T> at = points_.view[point];
-    if (is_finite(at))
-      put(point, {}, NearestSide(at, points_.bounds).side);
-    else
-      sink_.put(point, 0.0, false);
-  }
-
-  void finish(std::size_t begin, std::size_t end, TraceCounters* counters) {
+  // Takes the numbers of active points from `begin` on, by their places.
+  void find(std::size_t begin, std::span<const PointPlace> places, TraceCounters* counters) {
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (points_.takes_part(begin + i)) wait(begin + i, places[i]);
     count_on(counters);
-    if (boundary_.node_count > 0) bring_neighbours_together(begin, end);
+    if (boundary_.node_count > 0) bring_neighbours_together(begin, begin + places.size());
     for (int round = 0; !waiting_.empty(); ++round) {
       const double accuracy = sink_.next_accuracy(round);
       add_boundary(accuracy);
@@ -72,7 +51,7 @@ class Windings {
  private:
   struct Waiting {
     std::size_t point;
-    std::uint8_t side;
+    std::uint16_t side;
     bool is_on;
     double crossings;
   };
@@ -92,15 +71,27 @@ class Windings {
     return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
   }
 
+  // A point outside of the box has the side that is nearest, or is no number.
+  void wait(std::size_t point, PointPlace place) {
+    if (place.side == outside_box) {
+      const PointOf<T> at = points_.view[point];
+      if (!is_finite(at)) return sink_.put(point, 0.0, false);
+      place.side = static_cast<std::uint16_t>(NearestSide(at, points_.bounds).side);
+    }
+    if (place.is_on) on_.push_back(waiting_.size());
+    waiting_.push_back({point, place.side, place.is_on, static_cast<double>(place.crossings)});
+  }
   // The crossings of points on triangles, those at the point itself half.
   void count_on(TraceCounters* counters) {
     ListMaker<T> maker = maker_;
-    maker.kind = ListKind::crossings;
+    maker.stop = ListStop::never;
     const RaysOfPointsOn rays{points_, waiting_, on_};
-    each_list(maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<HitOf<T>> list) {
-      for (const HitOf<T>& crossing : distinct(list))
-        waiting_[on_[i]].crossings += (crossing.v != 0 ? 0.5 : 1.0) * (crossing.u > 0 ? 1.0 : -1.0);
-    });
+    each_list<ListEntryOf<T>>(
+        maker, rays, 0, on_.size(), counters, [&](std::size_t i, std::span<ListEntryOf<T>> list) {
+          for (const ListEntryOf<T>& crossing : distinct(list))
+            waiting_[on_[i]].crossings +=
+                (crossing.leaf_triangle == no_leaf_triangle ? 0.5 : 1.0) * crossing.side;
+        });
     on_.clear();
   }
 
@@ -230,7 +221,8 @@ class BoundaryProgress {
 template <class T, class Tree, class Sink, class Options, class Boundary>
 void find_windings(const char* call, const Tree& tree, const BoxOf<T>& box, const VertexRecords<T>& points,
                    const Options& options, const Sink& sink, const Boundary& boundary) {
-  ListMaker<T> maker = checked_maker(call, ListKind::places, tree, options);
+  ListMaker<T> maker = checked_maker(call, ListKind::sides, tree, options);
+  maker.stop = ListStop::at_origin;
   const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
   const QuietFloats quiet;
   const BoundaryProgress before_points(options.progress);
@@ -238,10 +230,13 @@ void find_windings(const char* call, const Tree& tree, const BoxOf<T>& box, cons
   const StepProgress of_points = before_points.rest();
   maker.progress = of_points.get();
   const Points<T> all{points, box, options.active};
-  const PointPlaces<T, Windings<T, Sink>> places(maker, all);
   over_parts(plan_of(maker), points.count, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     Windings<T, Sink> windings(maker, all, *of_tree, kernels, sink);
-    places.find(begin, end, counters, windings);
+    PointPlaces<T> places(maker, all);
+    for (std::size_t size; begin < end; begin += size) {
+      size = std::min(places.at_once, end - begin);
+      windings.find(begin, places.find(begin, begin + size, counters), counters);
+    }
   });
 }
 

@@ -9,27 +9,37 @@ namespace raylanes {
 // The items of lists.
 //   hits       as TriangleTree::all_hits() returns them, but in any order, with triangles that the tree has in parts
 //              several times, and cut at `max_count` only if that is cheap
-//   crossings  t, and the side as u: 1 along the normal, -1 against it; v: 1 if the triangle holds the origin, else 0,
-//              also where t rounds to 0; in any order and several times as well
-//   sides      crossings without t: the side is t. Their leaf triangle is in the bits of v, or HitD::unused; it is
-//              no_leaf_triangle where crossings have v = 1. If rays go alone, u says which weights are zero: 1, 2 and 4
-//              for the corners, added up
-//   places     sides; but of a ray that begins on a triangle this one at the end of the list, with t = 0
-//   lines      crossings; but of a ray with a triangle that floats do not decide this one at the end of the list, with
-//              t = 0
-enum class ListKind : std::uint8_t { hits, crossings, sides, places, lines };
+//   crossings  entries with t; in any order and several times as well
+//   sides      the same without t
+enum class ListKind : std::uint8_t { hits, crossings, sides };
+// The triangle that ends a list of crossings or sides, as an entry whose side is 0: none; one that holds the ray's
+// origin; one that floats do not decide.
+enum class ListStop : std::uint8_t { never, at_origin, undecided };
 
+// A triangle that a ray meets. Lists of hits have them while they are made: then the numbers are computed.
+template <class T>
+struct ListEntryOf {
+  T t;                                     // of a crossing; 0 if the triangle holds the origin
+  std::uint32_t leaf_triangle, primitive;  // no_leaf_triangle: holds the origin, also where t rounds to 0
+  std::int16_t side;                       // of a crossing: 1 along the normal, -1 against it
+  // Which weights of a crossing are zero, if rays go alone: 1, 2 and 4 for the corners, added up.
+  std::uint16_t zero_weights;
+
+  bool operator==(const ListEntryOf&) const = default;
+};
 // Lists of some rays, one behind the other in `list`: that of ray i ends before end[i].
 template <class T>
 struct ListBatchOf {
   const RayOf<T>* rays = nullptr;
   std::size_t size = 0;
   ListKind kind = ListKind::hits;
+  ListStop stop = ListStop::never;
   std::uint32_t max_count = ~0u;
   Facing facing = Facing::any;
   const std::uint32_t* skip = nullptr;  // for each ray the primitive that is not there for it; null: none
-  HitOf<T>* list = nullptr;
-  std::size_t room = 0;  // for so many; overlaps nothing
+  ListEntryOf<T>* list = nullptr;
+  HitOf<T>* hits = nullptr;  // the hit of each entry, in lists of hits
+  std::size_t room = 0;      // for so many; overlaps nothing
   std::size_t* end = nullptr;
   // If not null, for ListKind::sides: counts[i] becomes the sum of ray i's list, and no list is returned. Each triangle
   // must be in one leaf only. Then `room` is at least 16, however long the lists would be, and all rays are done.
@@ -63,11 +73,11 @@ struct VisitBatch {
 
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
-// directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are sides or places.
+// directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are crossings or sides.
 struct QueryKernels {
   std::size_t (*list)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*list_along_axes)(const TreeView& tree, const ListBatch& batch);
-  // The same as list by streams of up to max_rays_of_a_call rays, without places or `max_count`: all rays have their
+  // The same as list by streams of up to max_rays_of_a_call rays, without stops or `max_count`: all rays have their
   // lists, or none has. Needs scratch_bytes(rays, room) bytes of scratch. Null in the counted row: counted rays go
   // alone.
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);

@@ -18,40 +18,29 @@ inline void add_side(CrossingCount& count, bool is_against_normal) {
   ++count.crossings, count.winding += is_against_normal ? -1 : 1;
 }
 
-// An entry of a list has the side, or 0 if it is not asked for; which weights of a crossing are zero; the leaf
-// triangle, or no_leaf_triangle for a crossing at the origin; the primitive.
-template <class T>
-inline HitOf<T> entry_of(T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights = 0) {
-  HitOf<T> entry;
-  entry.t = side, entry.u = zero_weights, entry.v = std::bit_cast<T>(BitsOfNumber<T>{leaf_triangle}),
-  entry.primitive = primitive;
-  return entry;
-}
-template <class AnyHit>
-inline std::uint32_t leaf_triangle_in(const AnyHit& entry) {
-  return static_cast<std::uint32_t>(std::bit_cast<BitsOfNumber<decltype(entry.v)>>(entry.v));
-}
-
 // The memory of a list's entries.
 template <class T>
 struct HitStore {
   using Number = T;
-  HitOf<T>*next, *end;             // the entries that there is still room for
-  HitOf<T>* list = nullptr;        // where the ray's list begins
+  ListEntryOf<T>*next, *end;       // the entries that there is still room for
+  ListEntryOf<T>* list = nullptr;  // where the ray's list begins
   CrossingCount* count = nullptr;  // what a full list of sides is added to; null: none
 
   // Returns false, and keeps nothing, if there is no room.
-  bool put(T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights) {
+  bool put(std::int16_t side, std::uint32_t leaf_triangle, std::uint32_t primitive,
+           std::uint16_t zero_weights) {
     if (next == end) [[unlikely]] {
       if (count == nullptr) return false;
       add_to_count();
     }
-    *next++ = entry_of(side, leaf_triangle, primitive, zero_weights);
+    next->t = 0, next->leaf_triangle = leaf_triangle, next->primitive = primitive;
+    next->side = side, next->zero_weights = zero_weights;
+    ++next;
     return true;
   }
   // Empties a list of sides into the count.
   [[gnu::noinline]] void add_to_count() {
-    for (const HitOf<T>* entry = list; entry != next; ++entry) add_side(*count, entry->t < 0);
+    for (const ListEntryOf<T>* entry = list; entry != next; ++entry) add_side(*count, entry->side < 0);
     next = list;
   }
 };
@@ -60,17 +49,15 @@ struct HitStore {
 template <class Store>
 struct HitList {
   using T = typename Store::Number;
-  ListKind kind;
-  Facing facing;
+  const ListBatchOf<T>& batch;
   std::uint32_t skipped;
   T tmax;
   Store store;
   bool is_full = false;
   NearestFew<T> nearest;
 
-  HitList(const ListBatchOf<T>& batch, std::size_t ray, Store to)
-      : kind(batch.kind),
-        facing(batch.facing),
+  HitList(const ListBatchOf<T>& of, std::size_t ray, Store to)
+      : batch(of),
         skipped(skipped_by(batch, ray)),
         tmax(finite_tmax(batch.rays[ray].tmax)),
         store(to),
@@ -81,40 +68,40 @@ struct HitList {
   }
 
   // With an upper bound of t, for lists of hits. True ends the search.
-  bool add(T t_hi, T side, std::uint32_t leaf_triangle, std::uint32_t primitive, T zero_weights = 0) {
+  bool add(T t_hi, int side, std::uint32_t leaf_triangle, std::uint32_t primitive,
+           std::uint32_t zero_weights = 0) {
     if (primitive == skipped) return false;
-    is_full = !store.put(side, leaf_triangle, primitive, zero_weights);
+    is_full = !store.put(static_cast<std::int16_t>(side), leaf_triangle, primitive,
+                         static_cast<std::uint16_t>(zero_weights));
     if (is_full) return true;
-    if (kind == ListKind::hits) tmax = nearest.keep(t_hi, primitive, tmax);
+    if (batch.kind == ListKind::hits) tmax = nearest.keep(t_hi, primitive, tmax);
     return false;
+  }
+  bool stop_at(std::uint32_t primitive) {
+    add(0, 0, no_leaf_triangle, primitive);
+    return true;
   }
   // A lane that floats leave undecided.
   template <class Triangles, class AnyRay>
   [[gnu::noinline]] bool add_undecided(const Triangles& triangles, const AnyRay& ray,
                                        std::uint32_t leaf_triangle) {
-    if (kind == ListKind::hits) {
+    if (batch.kind == ListKind::hits) {
       const auto hit = exact_hit(triangles, ray, leaf_triangle);
       if (!hit) return false;
-      const int side = facing == Facing::any ? 0 : side_of(triangles, ray, leaf_triangle);
+      const int side = batch.facing == Facing::any ? 0 : side_of(triangles, ray, leaf_triangle);
       // Hits that round to one t stay in the list.
-      return counts(facing, side) &&
-             add(number_above(hit.t), static_cast<T>(side), leaf_triangle, hit.primitive);
+      return counts(batch.facing, side) && add(number_above(hit.t), side, leaf_triangle, hit.primitive);
     }
-    if (kind == ListKind::lines) {
-      add(0, 0, no_leaf_triangle, triangles.primitive(leaf_triangle));
-      return true;
-    }
+    const std::uint32_t primitive = triangles.primitive(leaf_triangle);
+    if (batch.stop == ListStop::undecided) return stop_at(primitive);
     if (along_axes(triangles, ray, leaf_triangle).is_apart) return false;
     const PredicateInput<T> in(triangles, ray, leaf_triangle);
     const auto crossing = detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
                                                 finite_tmax(ray.tmax));
-    if (kind == ListKind::places && crossing.holds_origin) {
-      add(0, 0, no_leaf_triangle, triangles.primitive(leaf_triangle));
-      return true;
-    }
-    return crossing.side != 0 && counts(facing, crossing.side) &&
-           add(0, static_cast<T>(crossing.side), crossing.is_at_origin ? no_leaf_triangle : leaf_triangle,
-               triangles.primitive(leaf_triangle), static_cast<T>(crossing.zero_weights));
+    if (batch.stop == ListStop::at_origin && crossing.holds_origin) return stop_at(primitive);
+    return crossing.side != 0 && counts(batch.facing, crossing.side) &&
+           add(0, crossing.side, crossing.is_at_origin ? no_leaf_triangle : leaf_triangle, primitive,
+               crossing.zero_weights);
   }
   // Lanes of a register that begins with `first`, with at least one certain or undecided. True ends the search.
   template <class Tree, class AnyRay, class Filtered>
@@ -124,8 +111,8 @@ struct HitList {
     filtered.t_hi.store(t_hi);
     const std::uint32_t against = bits(filtered.det > V(0.0f));
     std::uint32_t found = filtered.certain | filtered.undecided;
-    if (facing != Facing::any)
-      found = filtered.undecided | lanes_that_count(facing, filtered.certain, against);
+    if (batch.facing != Facing::any)
+      found = filtered.undecided | lanes_that_count(batch.facing, filtered.certain, against);
     const TrianglesOfRay<AnyRay> triangles(tree);
     for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
@@ -134,7 +121,7 @@ struct HitList {
         if (add_undecided(triangles, ray, leaf_triangle)) return true;
         continue;
       }
-      const T side = (against >> lane & 1u) != 0 ? T(-1) : T(1);
+      const int side = (against >> lane & 1u) != 0 ? -1 : 1;
       if (add(t_hi[lane], side, leaf_triangle, triangles.primitive(leaf_triangle))) return true;
     }
     return false;
@@ -165,39 +152,32 @@ inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& 
   return query.add_found(tree, ray, filtered, first);
 }
 
-// N entries of lists at a time become hits or crossings; `ray` is that of the first one and moves along.
+// The numbers of N entries of lists at a time: hits, or t of crossings. `ray` is that of the first one and moves along.
 template <int N, class T>
 inline void put_numbers(const typename TrianglesOf<T>::type& triangles, const ListBatchOf<T>& batch,
                         std::size_t& at, std::size_t count, std::size_t& ray) {
   DeferredHits<N, T> numbers;
+  HitOf<T> crossings[N];
   constexpr std::size_t ahead = 2 * N;
   for (; count - at >= N; at += N) {
-    HitOf<T>* const entries = batch.list + at;
+    ListEntryOf<T>* const entries = batch.list + at;
     for (std::size_t k = at + ahead; k < at + ahead + N && k < count; ++k)
-      if (const std::uint32_t next = leaf_triangle_in(batch.list[k]); next != no_leaf_triangle)
+      if (const std::uint32_t next = batch.list[k].leaf_triangle; next != no_leaf_triangle)
         triangles.prefetch(next);
-    T side[N];
-    std::uint32_t leaf_triangle[N], primitive[N];
     for (int lane = 0; lane < N; ++lane) {
       while (batch.end[ray] <= at + static_cast<std::size_t>(lane)) ++ray;
-      side[lane] = entries[lane].t, leaf_triangle[lane] = leaf_triangle_in(entries[lane]);
-      primitive[lane] = entries[lane].primitive;
-      numbers.set(lane, triangles, batch.rays[ray], leaf_triangle[lane]);
+      numbers.set(lane, triangles, batch.rays[ray], entries[lane].leaf_triangle);
     }
-    numbers.store(entries);
-    if (batch.kind == ListKind::hits) continue;
-    for (int lane = 0; lane < N; ++lane) {
-      const bool is_at_origin = leaf_triangle[lane] == no_leaf_triangle;
-      if (is_at_origin) entries[lane].t = 0;
-      entries[lane].u = side[lane], entries[lane].v = is_at_origin ? T(1) : T(0);
-      entries[lane].primitive = primitive[lane];
-    }
+    const bool are_hits = batch.kind == ListKind::hits;
+    numbers.store(are_hits ? batch.hits + at : crossings);
+    for (int lane = 0; lane < N && !are_hits; ++lane)
+      entries[lane].t = entries[lane].leaf_triangle == no_leaf_triangle ? 0 : crossings[lane].t;
   }
 }
 
 template <class T>
 inline void put_all_numbers(const TreeViewOf<T>& tree, const ListBatchOf<T>& batch, std::size_t count) {
-  if (batch.kind == ListKind::sides || batch.kind == ListKind::places) return;
+  if (batch.kind == ListKind::sides) return;
   std::size_t at = 0, ray = 0;
   const typename TrianglesOf<T>::type triangles(tree);
   if constexpr (TrianglesOf<T>::lanes > 1)
@@ -223,7 +203,7 @@ template <class Walk, class List, class Counters, class T = typename List::T>
   TraceBatch counted;
   counted.counters = batch.counters;
   Counters counters(counted);
-  HitOf<T>* next = batch.list;
+  ListEntryOf<T>* next = batch.list;
   std::size_t done = 0;
   for (; done < batch.size; ++done) {
     const RayOf<T>& ray = batch.rays[done];

@@ -20,12 +20,12 @@ struct Heap {
   std::size_t misses_left;  // lanes that may be undecided in vain before rays go one by one
   static constexpr std::uint32_t sign = 0x80000000u;
 
-  bool put(std::uint32_t number, float side, std::uint32_t triangle, std::uint32_t of_mesh) {
+  bool put(std::uint32_t number, bool is_against_normal, std::uint32_t triangle, std::uint32_t of_mesh) {
     if (size == room) [[unlikely]]
       overflow();
     if (is_full) return false;
     ray[size] = number, leaf_triangle[size] = triangle;
-    primitive[size++] = of_mesh | (std::bit_cast<std::uint32_t>(side) & sign);
+    primitive[size++] = of_mesh | (is_against_normal ? sign : 0u);
     return true;
   }
   // Adds the hits of a vector of rays: the side is against the normal where the bits of `against` have the sign. If
@@ -76,8 +76,8 @@ struct RayOfHeap {
   Heap* heap;
   std::uint32_t number;
 
-  bool put(float side, std::uint32_t leaf_triangle, std::uint32_t primitive, float) {
-    return heap->put(number, side, leaf_triangle, primitive);
+  bool put(std::int16_t side, std::uint32_t leaf_triangle, std::uint32_t primitive, std::uint16_t) {
+    return heap->put(number, side < 0, leaf_triangle, primitive);
   }
 };
 
@@ -190,9 +190,9 @@ inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
     batch.end[i] = begin;
   }
   for (std::size_t k = 0; k < heap.size; ++k) {
-    const float side = (heap.primitive[k] & Heap::sign) != 0 ? -1.0f : 1.0f;
-    batch.list[batch.end[heap.ray[k]]++] =
-        entry_of(side, heap.leaf_triangle[k], heap.primitive[k] & ~Heap::sign);
+    const std::int16_t side = (heap.primitive[k] & Heap::sign) != 0 ? -1 : 1;
+    batch.list[batch.end[heap.ray[k]]++] = {0, heap.leaf_triangle[k], heap.primitive[k] & ~Heap::sign, side,
+                                            0};
   }
 }
 
@@ -214,7 +214,8 @@ template <class Counters>
   if (heap.misses_left == 0) {
     ListBatch alone = batch;
     if (batch.counts != nullptr)  // lists of sides have the heap's memory
-      alone.list = reinterpret_cast<Hit*>(words), alone.room = batch.room * bytes_of_entry / sizeof(Hit);
+      alone.list = reinterpret_cast<ListEntryOf<float>*>(words),
+      alone.room = batch.room * bytes_of_entry / sizeof(ListEntryOf<float>);
     return list_all<WalksLists, AllHits<HitStore<float>>, Counters>(tree, alone);
   }
   if (heap.is_full) return 0;

@@ -53,11 +53,12 @@ TEST(DoubleLists, of_a_few_hits_end_the_search) {
   const BvhDArrays tree = build_bvh_d(mesh.vertices, mesh.triangles, {});
   for (const Path* path : supported_paths())
     for (const std::uint32_t most : {1u, 3u, 64u}) {
-      std::vector<HitD> list(300);
+      std::vector<ListEntryOf<double>> list(300);
+      std::vector<HitD> hits(list.size());
       std::size_t end = 0;
       DoubleListBatch batch;
       batch.rays = &through_stack, batch.size = 1, batch.max_count = most;
-      batch.list = list.data(), batch.room = list.size(), batch.end = &end;
+      batch.list = list.data(), batch.hits = hits.data(), batch.room = list.size(), batch.end = &end;
       ASSERT_EQ(kernels_of(*path).doubles.list(tree.view(), batch), 1u) << path->name << ' ' << most;
       ASSERT_GE(end, most);
     }

@@ -68,18 +68,26 @@ std::vector<std::uint8_t> occluded_by(const DoubleRayKernels& kernels, const Bvh
   return occluded;
 }
 // In the order of rays, then of primitives.
-std::vector<HitD> list_of(const DoubleRayKernels& kernels, const BvhDArrays& tree,
-                          const std::vector<RayD>& rays, ListKind kind, Facing facing) {
-  std::vector<HitD> list(most * most);
+template <class Entry>
+std::vector<Entry> list_of(const DoubleRayKernels& kernels, const BvhDArrays& tree,
+                           const std::vector<RayD>& rays, ListKind kind, ListStop stop, Facing facing) {
+  std::vector<ListEntryOf<double>> list(most * most);
+  std::vector<HitD> hits(list.size());
   std::vector<std::size_t> ends(rays.size());
   DoubleListBatch batch;
-  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.facing = facing;
-  batch.list = list.data(), batch.room = list.size(), batch.end = ends.data();
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.stop = stop,
+  batch.facing = facing;
+  batch.list = list.data(), batch.hits = hits.data(), batch.room = list.size(), batch.end = ends.data();
   EXPECT_EQ(kernels.list(tree.view(), batch), rays.size());
+  std::vector<Entry> items;
+  if constexpr (std::is_same_v<Entry, HitD>)
+    items = hits;
+  else
+    items = list;
   for (std::size_t i = 0, at = 0; i < rays.size(); at = ends[i++])
-    std::ranges::sort(std::span(list).subspan(at, ends[i] - at), {}, &HitD::primitive);
-  list.resize(ends.back());
-  return list;
+    std::ranges::sort(std::span(items).subspan(at, ends[i] - at), {}, &Entry::primitive);
+  items.resize(ends.back());
+  return items;
 }
 
 // Triangles that rays hit, which are not there for them.
@@ -159,13 +167,20 @@ TEST_P(EveryRow, of_doubles) {
       }
       EXPECT_EQ(occluded, occluded_by(of_scalar, tree, rays, facing));
       EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, Rays::stream));
-      for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides, ListKind::places}) {
-        const std::vector<HitD> list = list_of(mine, tree, rays, kind, facing);
-        EXPECT_TRUE(same_bytes(list, list_of(of_scalar, tree, rays, kind, facing)));
-        if (n > 20 && facing == Facing::any) {
-          EXPECT_GT(list.size(), 20u);
-        }
+      const auto hits = list_of<HitD>(mine, tree, rays, ListKind::hits, ListStop::never, facing);
+      EXPECT_TRUE(
+          same_bytes(hits, list_of<HitD>(of_scalar, tree, rays, ListKind::hits, ListStop::never, facing)));
+      if (n > 20 && facing == Facing::any) {
+        EXPECT_GT(hits.size(), 20u);
       }
+      for (const ListKind kind : {ListKind::crossings, ListKind::sides})
+        for (const ListStop stop : {ListStop::never, ListStop::at_origin, ListStop::undecided}) {
+          const auto list = list_of<ListEntryOf<double>>(mine, tree, rays, kind, stop, facing);
+          EXPECT_EQ(list, list_of<ListEntryOf<double>>(of_scalar, tree, rays, kind, stop, facing));
+          if (n > 20 && facing == Facing::any && stop != ListStop::undecided) {
+            EXPECT_GT(list.size(), 20u);
+          }
+        }
     }
   // Some begin elsewhere.
   std::vector<RayD> rays = some_double_rays();

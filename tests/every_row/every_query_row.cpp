@@ -38,33 +38,43 @@ using Lister = std::size_t (*)(const TreeView& tree, const ListBatch& batch);
 using Bytes = std::size_t (*)(std::size_t rays, std::size_t room);
 
 // Each ray's list in order.
-std::vector<std::vector<Hit>> lists_of(Lister lister, const TreeView& tree, const std::vector<Ray>& rays,
-                                       ListKind kind, Bytes scratch_bytes, TraceCounters& counters) {
-  std::vector<Hit> list(rays.size() * most);
+template <class Entry>
+std::vector<std::vector<Entry>> lists_of(Lister lister, const TreeView& tree, const std::vector<Ray>& rays,
+                                         ListKind kind, ListStop stop, Bytes scratch_bytes,
+                                         TraceCounters& counters) {
+  std::vector<ListEntryOf<float>> list(rays.size() * most);
+  std::vector<Hit> hits(list.size());
   std::vector<std::size_t> ends(rays.size());
   ListBatch batch;
-  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.counters = &counters;
-  batch.list = list.data(), batch.room = list.size(), batch.end = ends.data();
+  batch.rays = rays.data(), batch.size = rays.size(), batch.kind = kind, batch.stop = stop,
+  batch.counters = &counters;
+  batch.list = list.data(), batch.hits = hits.data(), batch.room = list.size(), batch.end = ends.data();
   std::vector<Line> scratch;
   if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), list.size()) / sizeof(Line) + 1);
   batch.scratch = scratch.data();
   EXPECT_EQ(lister(tree, batch), rays.size());
-  std::vector<std::vector<Hit>> lists;
+  std::vector<Entry> items;
+  if constexpr (std::is_same_v<Entry, Hit>)
+    items = hits;
+  else
+    items = list;
+  std::vector<std::vector<Entry>> lists;
   for (std::size_t i = 0, at = 0; i < rays.size(); at = ends[i++]) {
-    std::vector<Hit>& hits = lists.emplace_back(list.begin() + static_cast<std::ptrdiff_t>(at),
-                                                list.begin() + static_cast<std::ptrdiff_t>(ends[i]));
-    std::ranges::sort(hits, {}, &Hit::primitive);
+    std::vector<Entry>& of_ray = lists.emplace_back(items.begin() + static_cast<std::ptrdiff_t>(at),
+                                                    items.begin() + static_cast<std::ptrdiff_t>(ends[i]));
+    std::ranges::sort(of_ray, {}, &Entry::primitive);
   }
   return lists;
 }
 
+template <class Entry>
 void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::vector<Ray>& rays,
-                   ListKind kind, Bytes scratch_bytes = nullptr) {
+                   ListKind kind, ListStop stop, Bytes scratch_bytes = nullptr) {
   if (!every.offers(mine, of_scalar)) return;
   const Tree tree;
   TraceCounters my_counters, scalar_counters;
-  const auto lists = lists_of(mine, tree.view, rays, kind, scratch_bytes, my_counters),
-             scalar = lists_of(of_scalar, tree.view, rays, kind, scratch_bytes, scalar_counters);
+  const auto lists = lists_of<Entry>(mine, tree.view, rays, kind, stop, scratch_bytes, my_counters),
+             scalar = lists_of<Entry>(of_scalar, tree.view, rays, kind, stop, scratch_bytes, scalar_counters);
   EXPECT_EQ(my_counters.triangle_tests == 0, scalar_counters.triangle_tests == 0);
   std::size_t found = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -81,7 +91,7 @@ void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratc
   const std::vector<Ray> rays = some_rays();
   constexpr std::size_t room = 16;
   TraceCounters counters;
-  std::vector<Hit> list(room);
+  std::vector<ListEntryOf<float>> list(room);
   std::vector<CrossingCount> counts(rays.size());
   std::vector<Line> scratch;
   if (scratch_bytes != nullptr) scratch.resize(scratch_bytes(rays.size(), room) / sizeof(Line) + 1);
@@ -90,11 +100,11 @@ void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratc
   batch.counters = &counters;
   batch.list = list.data(), batch.room = room, batch.scratch = scratch.data(), batch.counts = counts.data();
   EXPECT_EQ(mine(tree.view, batch), rays.size());
-  const auto lists = lists_of(of_scalar, tree.view, rays, ListKind::sides, scratch_bytes, counters);
+  const auto lists = lists_of<ListEntryOf<float>>(of_scalar, tree.view, rays, ListKind::sides,
+                                                  ListStop::never, scratch_bytes, counters);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     CrossingCount expected;
-    for (const Hit& crossing : lists[i])
-      ++expected.crossings, expected.winding += static_cast<int>(crossing.t);
+    for (const auto& crossing : lists[i]) ++expected.crossings, expected.winding += crossing.side;
     EXPECT_EQ(counts[i], expected) << "ray " << i;
   }
 }
@@ -259,14 +269,17 @@ TEST_P(EveryRow, of_queries) {
   const AllQueryKernels &mine = kernels_of(path()).queries, &of_scalar = kernels_of(scalar()).queries;
   for (const auto kernels : {&AllQueryKernels::plain, &AllQueryKernels::counted}) {
     const QueryKernels &rows = mine.*kernels, &scalars = of_scalar.*kernels;
-    for (const ListKind kind : {ListKind::hits, ListKind::crossings, ListKind::sides}) {
-      compare_lists(*this, rows.list, scalars.list, some_rays(), kind);
-      compare_lists(*this, rows.list_together, scalars.list_together, some_rays(), kind,
-                    mine.plain.scratch_bytes);
-    }
+    const auto compare = [&]<class Entry>(ListKind kind, Entry) {
+      compare_lists<Entry>(*this, rows.list, scalars.list, some_rays(), kind, ListStop::never);
+      compare_lists<Entry>(*this, rows.list_together, scalars.list_together, some_rays(), kind,
+                           ListStop::never, mine.plain.scratch_bytes);
+    };
+    compare(ListKind::hits, Hit());
+    for (const ListKind kind : {ListKind::crossings, ListKind::sides}) compare(kind, ListEntryOf<float>());
     compare_counts(*this, rows.list, scalars.list);
     compare_counts(*this, rows.list_together, scalars.list_together, mine.plain.scratch_bytes);
-    compare_lists(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(), ListKind::places);
+    compare_lists<ListEntryOf<float>>(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(),
+                                      ListKind::sides, ListStop::at_origin);
     compare_next(*this, rows, scalars);
     const std::size_t of_streams = kernels_of(path()).traversal.scratch_bytes(TraversalMode::stream, most);
     compare_chosen(*this, rows.chosen_single, scalars.chosen_single, scalars, of_streams);

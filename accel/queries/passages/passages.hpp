@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -25,11 +24,6 @@ inline Corners corners_of(const TreeView& tree, std::uint32_t leaf_triangle) {
     corners.vertex[k / 3][k % 3] = block.number[k][leaf_triangle % tree_width];
   return corners;
 }
-// In an entry of ListKind::sides.
-template <class AnyHit>
-std::uint32_t leaf_triangle_of(const AnyHit& entry) {
-  return static_cast<std::uint32_t>(std::bit_cast<BitsOfNumber<decltype(entry.v)>>(entry.v));
-}
 
 // Whether the weight of a corner may be zero. The weights are u, v and 1 − u − v; u and v are rounded once, the sum is
 // rounded again.
@@ -46,9 +40,8 @@ struct MetEdge {
   PointOf<T> ends[2] = {};
   bool is_met = false;
 
-  // An entry of ListKind::sides.
-  MetEdge(const HitOf<T>& entry, const CornersOf<T>& corners) : is_met(entry.u != 0) {
-    const auto zero_weights = static_cast<unsigned>(entry.u);
+  MetEdge(const ListEntryOf<T>& entry, const CornersOf<T>& corners) : is_met(entry.zero_weights != 0) {
+    const unsigned zero_weights = entry.zero_weights;
     std::size_t count = 0;
     for (unsigned k = 0; k < 3; ++k)
       if ((zero_weights >> k & 1u) == 0 && count < 2) ends[count++] = corners.vertex[k];
@@ -71,9 +64,10 @@ class PassageJudge {
     bool is_passage = false;
     const RayOf<T> around = part_around(ray, hit.t);
     const RaySourceOf<T> rays{.records = RayRecords<RayOf<T>>(&around, 1), .skip = skipped};
-    each_list(maker_, rays, 0, 1, maker_.counters, [&](std::size_t, std::span<HitOf<T>> sides) {
-      is_passage = is_among(distinct(sides), hit.primitive);
-    });
+    each_list<ListEntryOf<T>>(maker_, rays, 0, 1, maker_.counters,
+                              [&](std::size_t, std::span<ListEntryOf<T>> sides) {
+                                is_passage = is_among(distinct(sides), hit.primitive);
+                              });
     return is_passage;
   }
 
@@ -94,25 +88,25 @@ class PassageJudge {
   }
   // The sides of all crossings of an edge add up to how often the ray passes there. As many count, of that side, with
   // the lowest primitives. All count if their triangles lie in one place.
-  bool is_among(std::span<const HitOf<T>> sides, std::uint32_t primitive) const {
+  bool is_among(std::span<const ListEntryOf<T>> sides, std::uint32_t primitive) const {
     const auto own = std::find_if(sides.begin(), sides.end(),
-                                  [&](const HitOf<T>& side) { return side.primitive == primitive; });
+                                  [&](const ListEntryOf<T>& side) { return side.primitive == primitive; });
     if (own == sides.end()) return false;
-    if (leaf_triangle_of(*own) == no_leaf_triangle) return true;
-    const CornersOf<T> corners = corners_of(maker_.tree, leaf_triangle_of(*own));
+    if (own->leaf_triangle == no_leaf_triangle) return true;
+    const CornersOf<T> corners = corners_of(maker_.tree, own->leaf_triangle);
     const MetEdge<T> edge(*own, corners);
     if (!edge.is_met) return true;
-    T sum = 0, before = 0;
+    int sum = 0, before = 0;
     bool is_alone = true;
-    for (const HitOf<T>& side : sides) {
-      if (leaf_triangle_of(side) == no_leaf_triangle) continue;
-      const CornersOf<T> others = corners_of(maker_.tree, leaf_triangle_of(side));
+    for (const ListEntryOf<T>& side : sides) {
+      if (side.leaf_triangle == no_leaf_triangle) continue;
+      const CornersOf<T> others = corners_of(maker_.tree, side.leaf_triangle);
       if (!(MetEdge<T>(side, others) == edge)) continue;
-      sum += side.t;
-      if (side.t == own->t && side.primitive < primitive) before += side.t;
+      sum += side.side;
+      if (side.side == own->side && side.primitive < primitive) before += side.side;
       is_alone = is_alone && std::is_permutation(corners.vertex, corners.vertex + 3, others.vertex);
     }
-    return is_alone || (sum - before) * own->t > 0;
+    return is_alone || (sum - before) * own->side > 0;
   }
 
   ListMaker<T> maker_;
