@@ -53,7 +53,8 @@ TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choi
   if (!may_be_packets && !may_fly(tree, choice)) return TraversalMode::stream;
   const TrianglesOfRays triangles =
       triangles_of_a_ray<float>(tree, choice.nearest_triangle, {batch.rays, batch.size}, shared, point);
-  if (may_be_packets && packets_pay(triangles, only_decides, false)) return TraversalMode::packet;
+  const PacketsOf kind = only_decides ? PacketsOf::any_hits : PacketsOf::nearest_hits;
+  if (may_be_packets && packets_pay(triangles, kind)) return TraversalMode::packet;
   return may_fly(tree, choice) && triangles.middle > max_of_neighbours ? TraversalMode::single
                                                                        : TraversalMode::stream;
 }

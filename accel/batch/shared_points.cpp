@@ -291,9 +291,9 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
 }
 
 // Measured: from so many triangles a ray on streams take less time, and single rays where they are few.
-bool packets_pay(const TrianglesOfRays& triangles, bool only_decides, bool of_doubles) {
+bool packets_pay(const TrianglesOfRays& triangles, PacketsOf kind) {
   constexpr double of_closest = 0.35, of_any = 0.2;
-  return triangles.mean < (only_decides && !of_doubles ? of_any : of_closest);
+  return triangles.mean < (kind == PacketsOf::any_hits ? of_any : of_closest);
 }
 
 template TrianglesOfRays triangles_of_a_ray<float>(const TreeView&, NearestTriangle<float>,

@@ -59,6 +59,7 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
                                    bool by_origins = false);
 
 // Whether rays that have a common point go as packets: not where these would test many triangles for each ray.
-bool packets_pay(const TrianglesOfRays& triangles, bool only_decides, bool of_doubles);
+enum class PacketsOf { nearest_hits, any_hits, doubles };
+bool packets_pay(const TrianglesOfRays& triangles, PacketsOf kind);
 
 }  // namespace raylanes

@@ -50,7 +50,7 @@ void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, c
     if (is_shared &&
         packets_pay(triangles_of_a_ray<double>(tree, kernels.nearest_triangle, {part.rays, part.size},
                                                SharedApex::origin, left[0].origin),
-                    part.occluded != nullptr, true))
+                    PacketsOf::doubles))
       kernels.packet(tree, part);
     else
       run_apart(kernels, tree, part);

@@ -50,14 +50,13 @@ void require_triangles(const Scene& scene, const TraceOptions& options) {
 }
 
 // Says of a hit that may touch an edge whether the ray passes through its instance there.
-bool is_passage(const Scene& scene, const SceneParts& parts, Ray ray, const SceneHit& hit,
+bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
                 const std::optional<SkippedPrimitive>& skip, const TraceOptions& options) {
   const Instance& instance = parts.instances[hit.instance];
   if (!instance.is_identity) {
     const Ray given = ray;
     kernels_of(checked_path(options.path)).queries.map_rays(&given, nullptr, 1, instance.inverse, &ray);
   }
-  const PassageJudge<float> judge(TreeOf::bvh(*scene.tree(hit.geometry)), options);
   return judge(ray, skip && skip->instance == hit.instance ? skip->primitive : no_primitive,
                {hit.t, hit.u, hit.v, hit.primitive});
 }
@@ -67,12 +66,15 @@ void keep_passages(const Scene& scene, const SceneParts& parts, const RaySource&
                    const SceneHitView& hits, TraceOptions options, std::uint32_t mask) {
   const QuietFloats quiet;
   const PrimitiveView skip = options.skip;
+  std::vector<std::optional<PassageJudge<float>>> judges(scene.geometry_count());
   const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const SceneHit> found,
                              std::span<std::uint8_t> rejected) {
     for (std::size_t k = 0; k < indices.size(); ++k) {
       std::optional<SkippedPrimitive> skipped;
       if (skip.first != nullptr) skipped = skipped_at(skip, indices[k]);
-      rejected[k] = is_passage(scene, parts, rays[indices[k]], found[k], skipped, options) ? 0 : 1;
+      auto& judge = judges[found[k].geometry];
+      if (!judge) judge.emplace(TreeOf::bvh(*scene.tree(found[k].geometry)), options);
+      rejected[k] = is_passage(*judge, parts, rays[indices[k]], found[k], skipped, options) ? 0 : 1;
     }
   };
   options.active = nullptr, options.progress = nullptr;
