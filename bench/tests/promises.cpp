@@ -8,7 +8,6 @@
 #include "../rows/kernels/kernel_rows.hpp"
 #include "../rows/point_rows.hpp"
 #include "../rows/roots/root_rows.hpp"
-#include "../support/roots/double_survey.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -28,22 +27,6 @@ TEST(Promises, of_square_roots) {
   EXPECT_FALSE(kept(2 * promised, 0));
   EXPECT_FALSE(kept(nan, 0));
   EXPECT_EQ(kept(promised, 1), row.promise().unchecked);
-}
-
-TEST(Promises, of_roots_of_doubles) {
-  const Path* const path = &paths().front();
-  const std::vector<JudgedDoubleRoot> rows = judged_double_roots(std::span(&path, 1), 2000);
-  for (const JudgedDoubleRoot& row : rows) {
-    EXPECT_TRUE(row.keeps_promise()) << row.function() << ' ' << row.method() << ' ' << row.largest_ulp;
-    if (row.method() == "hardware" && row.function() != "double_rsqrt") {
-      EXPECT_EQ(row.rounded_correctly, row.inputs) << row.function();
-    }
-    JudgedDoubleRoot worse = row;
-    worse.largest_ulp = 2 * row.max_ulp_promised();
-    EXPECT_FALSE(worse.keeps_promise());
-    worse = row, worse.specials_ok = false;
-    EXPECT_FALSE(worse.keeps_promise());
-  }
 }
 
 TEST(Promises, of_kernels) {

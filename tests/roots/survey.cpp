@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "../../bench/support/roots/double_survey.hpp"
 #include "../../bench/support/roots/root_survey.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
@@ -13,6 +14,7 @@
 namespace raylanes::testing {
 namespace {
 
+using bench::JudgedDoubleRoot;
 using bench::RootAccuracy;
 using bench::RootFunction;
 using bench::RootRow;
@@ -162,6 +164,22 @@ TEST(RootJudge, notices_wrong_special_values) {
   EXPECT_EQ(judged_fault(faulty_root<infinity_bits, 0x7f7fffff>).wrong_specials, 1u);
   EXPECT_EQ(judged_fault(faulty_root<0x7f800001, infinity_bits>).wrong_specials, 1u);
   EXPECT_EQ(judged_fault(faulty_root<0xff800000, 0>).wrong_specials, 1u);
+}
+
+TEST(DoubleSurvey, finds_promises_kept_and_broken) {
+  const Path* const path = &paths().front();
+  const std::vector<JudgedDoubleRoot> rows = bench::judged_double_roots(std::span(&path, 1), 2000);
+  for (const JudgedDoubleRoot& row : rows) {
+    EXPECT_TRUE(row.keeps_promise()) << row.function() << ' ' << row.method() << ' ' << row.largest_ulp;
+    if (row.method() == "hardware" && row.function() != "double_rsqrt") {
+      EXPECT_EQ(row.rounded_correctly, row.inputs) << row.function();
+    }
+    JudgedDoubleRoot worse = row;
+    worse.largest_ulp = 2 * row.max_ulp_promised();
+    EXPECT_FALSE(worse.keeps_promise());
+    worse = row, worse.specials_ok = false;
+    EXPECT_FALSE(worse.keeps_promise());
+  }
 }
 
 }  // namespace
