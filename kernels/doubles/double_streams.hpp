@@ -21,7 +21,6 @@ struct ScaledEnd {
 };
 
 struct DoubleStreamBatch : DoublesTogether {
-  static constexpr bool moves_rays = true;
   ScaledRay* scaled;  // of the rays of the octant that is traced
   ScaledEnd* ends;
 
@@ -36,35 +35,31 @@ struct DoubleStreamBatch : DoublesTogether {
 };
 
 // As StreamLeaves.
-template <bool only_decides_>
+template <bool only_decides>
 class DoubleStreamLeaves
-    : FilteredRays<DoubleStreamLeaves<only_decides_>, Doubles<double_lanes>, only_decides_> {
+    : public StreamOctant<NoCounters>,
+      FilteredRays<DoubleStreamLeaves<only_decides>, Doubles<double_lanes>, only_decides> {
   static constexpr int N = double_lanes;
   using V = Doubles<N>;
-  using Filtered = FilteredRays<DoubleStreamLeaves, V, only_decides_>;
+  using Filtered = FilteredRays<DoubleStreamLeaves, V, only_decides>;
   friend Filtered;
 
  public:
-  using Batch = DoubleStreamBatch;
-  static constexpr bool only_decides = only_decides_, reads_triangles = false, shortens_rays = true,
-                        packs_numbers = false;
-
-  DoubleStreamLeaves(const TreeView& tree, const Batch& batch, OctantRays& rays, float farthest)
-      : tree_(tree),
+  DoubleStreamLeaves(const TreeView& tree, const DoubleStreamBatch& batch)
+      : StreamOctant(calls_of<DoubleStreamLeaves>, {.only_decides = only_decides}, tree, batch),
         batch_(batch),
-        rays_(rays),
-        farthest_(farthest),
         triangles_(*batch.tree),
-        power_(batch.tree->frame.power) {
-    for (std::uint32_t i = 0; i < rays.size; ++i) take(i);
+        power_(batch.tree->frame.power) {}
+
+  void begin() {
+    for (std::uint32_t i = 0; i < rays_.size; ++i) take(i);
   }
-  static void trace_single(const TreeView&, const Batch& batch, std::size_t number) {
-    batch.trace_alone(number);
-  }
+  void trace_single(std::size_t number) { batch_.trace_alone(number); }
+  void move(std::size_t number, Ray& to) const { batch_.move(number, to); }
   void prefetch_leaf(TreeReference leaf) const { triangles_.prefetch_leaf(leaf_of(leaf)); }
   // The numbers of the best hits.
-  [[gnu::noinline, gnu::flatten]] void store_results() requires(!only_decides_) {
-    for (std::uint32_t i = 0; i < rays_.size; i += N) {
+  [[gnu::noinline, gnu::flatten]] void store_results() {
+    for (std::uint32_t i = 0; i < rays_.size && !only_decides; i += N) {
       const RayD* rays[N];
       HitD spare, *hits[N];
       std::uint32_t winners[N];
@@ -79,11 +74,6 @@ class DoubleStreamLeaves
     }
   }
 
- protected:
-  NoCounters counters() const { return NoCounters(batch_); }
-  BothSides sides() const { return {}; }
-
-  // The list may be read in whole registers.
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     const LeafReference of = leaf_of(leaf);
@@ -94,6 +84,19 @@ class DoubleStreamLeaves
     const LeafFilterOf<double> filter(row, triangles, static_cast<double>(farthest_), power_of_two(power_));
     for (std::uint32_t i = 0; i < size; i += N) test_triangles(filter, triangles, first, list + i, size - i);
   }
+
+  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
+                                                   std::uint32_t size) {
+    each_lone(from, list, size,
+              [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, NoCounters& cost) {
+                trace_lone(below, boxes, i, cost);
+              });
+  }
+
+ private:
+  using State = typename Filtered::State;
+
+  BothSides sides() const { return {}; }
 
   // A ray that goes on alone below a node.
   void trace_lone(const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, NoCounters& cost) {
@@ -113,15 +116,6 @@ class DoubleStreamLeaves
       keep_unscaled(i, query);
     }
   }
-
-  const TreeView& tree_;
-  const Batch& batch_;
-  OctantRays& rays_;
-  float farthest_;
-  float scale_ = 1.0f;
-
- private:
-  using State = typename Filtered::State;
 
   // Asks for what the winners from there on will need.
   void prefetch_results(std::uint32_t first) const {
@@ -199,6 +193,7 @@ class DoubleStreamLeaves
     batch_.occluded[rays_.number[i]] = 1;
   }
 
+  const DoubleStreamBatch& batch_;
   DoubleTriangles triangles_;
   int power_;
 };
@@ -222,7 +217,9 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   rays.scaled =
       reinterpret_cast<ScaledRay*>(static_cast<std::byte*>(batch.scratch) + bytes_of_octants(batch.size));
   rays.ends = reinterpret_cast<ScaledEnd*>(rays.scaled + scaled_rays_of(batch.size));
-  Streams<Exact<Grade::fast>, DoubleStreamLeaves<only_decides>, NoCounters>(nodes, rays).trace();
+  if constexpr (only_decides) __builtin_memset(batch.occluded, 0, batch.size);
+  DoubleStreamLeaves<only_decides> leaves(nodes, rays);
+  Streams(leaves, batch.scratch).trace();
 }
 // Batches that choose triangles, and hits behind others, go as single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {

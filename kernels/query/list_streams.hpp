@@ -90,33 +90,41 @@ struct HeapBatch : TraceBatch {
 
 // As StreamLeaves.
 template <class Test, class Counters>
-class ListLeaves {
+class ListLeaves : public StreamOctant<Counters> {
+  using Base = StreamOctant<Counters>;
+  using Base::counters, Base::farthest_, Base::needs_, Base::rays_, Base::tree_;
+
  public:
-  using Batch = HeapBatch;
-  static constexpr bool only_decides = false, reads_triangles = true, shortens_rays = false,
-                        packs_numbers = true;
+  ListLeaves(const TreeView& tree, const HeapBatch& batch)
+      : Base(Base::template calls_of<ListLeaves>,
+             {.only_decides = false,
+              .shortens_rays = false,
+              .packs_rays = true,
+              .packs_lengths = true,
+              .packs_numbers = true,
+              .scale = filter_scale<Test>(tree.bounds)},
+             tree, batch),
+        batch_(batch) {}
 
-  ListLeaves(const TreeView& tree, const HeapBatch& batch, OctantRays& rays, float farthest)
-      : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}
-
-  static void trace_single(const TreeView& tree, const HeapBatch& batch, std::size_t number) {
-    const Ray& ray = batch.rays[number];
+  void begin() {}
+  void store_results() {}
+  void trace_single(std::size_t number) {
+    const Ray& ray = batch_.rays[number];
     if (!is_valid(ray)) return;
-    Counters counters(batch);
-    AllHits<RayOfHeap> query = batch.list_of(static_cast<std::uint32_t>(number));
-    WalksNodes::walk<Test>(tree, ray, query, counters);
+    Counters cost = counters();
+    AllHits<RayOfHeap> query = batch_.list_of(static_cast<std::uint32_t>(number));
+    WalksNodes::walk<Test>(tree_, ray, query, cost);
   }
-
- protected:
-  Counters counters() const { return Counters(batch_); }
-
-  template <class Prepared>
-  void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
-                  Counters& cost) {
-    AllHits<RayOfHeap> query = batch_.list_of(rays_.number[i]);
-    trace<Test>(below, ray, prepared, query, cost);
+  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
+                                                   std::uint32_t size) {
+    this->each_lone(from, list, size,
+                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
+                      const std::uint32_t number = rays_.number[i];
+                      AllHits<RayOfHeap> query = batch_.list_of(number);
+                      trace<Test>(below, batch_.rays[number], this->template unpacked<Test>(i, boxes), query,
+                                  cost);
+                    });
   }
-
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     if (batch_.heap->misses_left == 0) [[unlikely]]
@@ -124,7 +132,7 @@ class ListLeaves {
     const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
-    const LeafFilter filter(block, triangles, farthest_, scale_);
+    const LeafFilter filter(block, triangles, farthest_, needs_.scale);
     for (std::uint32_t i = 0; i < size; i += stream_lanes) {
       const void *rows[stream_lanes], *ends[stream_lanes];
       for (int lane = 0; lane < stream_lanes; ++lane) {
@@ -152,12 +160,6 @@ class ListLeaves {
     }
   }
 
-  const TreeView& tree_;
-  const HeapBatch& batch_;
-  OctantRays& rays_;
-  float farthest_;
-  float scale_ = filter_scale<Test>(tree_.bounds);
-
  private:
   [[gnu::noinline]] void put_undecided(std::uint32_t undecided, const ListEntry* list,
                                        std::uint32_t leaf_triangle) {
@@ -169,6 +171,8 @@ class ListLeaves {
       if (heap.size == size) --heap.misses_left;
     }
   }
+
+  const HeapBatch& batch_;
 };
 
 // The heap, behind what streams keep.
@@ -210,7 +214,8 @@ template <class Counters>
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,
   rays.counters = batch.counters;
   rays.lists = &batch, rays.heap = &heap;
-  if (tree.root != empty_reference) Streams<Test, ListLeaves<Test, Counters>, Counters>(tree, rays).trace();
+  ListLeaves<Test, Counters> leaves(tree, rays);
+  if (tree.root != empty_reference) Streams(leaves, batch.scratch).trace();
   if (heap.misses_left == 0) {
     ListBatch alone = batch;
     if (batch.counts != nullptr)  // lists of sides have the heap's memory

@@ -51,30 +51,32 @@ inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::ui
 
 // As StreamLeaves. The memory in which other streams keep leaf triangles and hits has the indices of a leaf's rays and
 // their ends.
-template <class Test, class Counters>
-class VisitLeaves {
+template <class Counters>
+class VisitLeaves : public StreamOctant<Counters> {
+  using Base = StreamOctant<Counters>;
+  using Base::counters, Base::rays_, Base::tree_;
+
  public:
-  using Batch = VisitBatch;
-  static constexpr bool only_decides = false, reads_triangles = false, shortens_rays = true;
+  VisitLeaves(const TreeView& tree, const VisitBatch& batch)
+      : Base(Base::template calls_of<VisitLeaves>, {.only_decides = false}, tree, batch), batch_(batch) {}
 
-  VisitLeaves(const TreeView& tree, const VisitBatch& batch, OctantRays& rays, float)
-      : tree_(tree), batch_(batch), rays_(rays) {
-    if (batch.tmax == nullptr) return;  // rows have the rays' own
-    for (std::uint32_t i = 0; i < rays.size; ++i) rays.rows[i].tmax = first_tmax(batch, rays.number[i]);
+  void begin() {
+    if (batch_.tmax == nullptr) return;  // rows have the rays' own
+    for (std::uint32_t i = 0; i < rays_.size; ++i) rays_.rows[i].tmax = first_tmax(batch_, rays_.number[i]);
   }
-
-  static void trace_single(const TreeView& tree, const VisitBatch& batch, std::size_t number) {
-    visit_single<Counters>(tree, batch, static_cast<std::uint32_t>(number), first_tmax(batch, number));
+  void store_results() {}
+  void prefetch_leaf(TreeReference) {}
+  void trace_single(std::size_t number) {
+    visit_single<Counters>(tree_, batch_, static_cast<std::uint32_t>(number), first_tmax(batch_, number));
   }
-
- protected:
-  Counters counters() const { return Counters(batch_); }
-
-  void trace_lone(const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
-    float& tmax = rays_.rows[i].tmax;
-    tmax = visit_alone(below, batch_, boxes, rays_.number[i], tmax, cost);
+  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
+                                                   std::uint32_t size) {
+    this->each_lone(from, list, size,
+                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
+                      float& tmax = rays_.rows[i].tmax;
+                      tmax = visit_alone(below, batch_, boxes, rays_.number[i], tmax, cost);
+                    });
   }
-
   [[gnu::noinline]] void visit_leaf(TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     std::uint32_t* const numbers = rays_.leaf_triangle;
     auto* const tmax = reinterpret_cast<float*>(rays_.hits);
@@ -87,10 +89,8 @@ class VisitLeaves {
     for (std::uint32_t k = 0; k < size; ++k) rays_.rows[index_of(list[k])].tmax = tmax[k];
   }
 
-  const TreeView& tree_;
+ private:
   const VisitBatch& batch_;
-  OctantRays& rays_;
-  float farthest_ = 0.0f, scale_ = 1.0f;  // triangles would ask for them
 };
 
 }  // namespace

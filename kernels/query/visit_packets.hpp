@@ -118,14 +118,13 @@ inline void visit_from_origin(const TreeView& tree, const VisitBatch& batch) {
 // As QueryKernels has it. Rays that are counted go alone.
 template <class Counters>
 [[gnu::noinline]] void visit_boxes(const TreeView& tree, const VisitBatch& batch) {
-  using Leaves = VisitLeaves<Exact<Grade::reproducible>, Counters>;
   if (tree.root == empty_reference) return;
+  VisitLeaves<Counters> leaves(tree, batch);
   if constexpr (std::is_same_v<Counters, NoCounters>) {
     if (batch.share_origin) return visit_from_origin(tree, batch);
-    if (batch.size >= min_visit_stream)
-      return Streams<Exact<Grade::reproducible>, Leaves, Counters>(tree, batch).trace();
+    if (batch.size >= min_visit_stream) return Streams(leaves, batch.scratch).trace();
   }
-  for (std::size_t i = 0; i < batch.size; ++i) Leaves::trace_single(tree, batch, i);
+  for (std::size_t i = 0; i < batch.size; ++i) leaves.trace_single(i);
 }
 
 }  // namespace

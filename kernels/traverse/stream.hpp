@@ -4,55 +4,44 @@
 // rays one ray at a time.
 #pragma once
 
-#include "stream_boxes.hpp"
-#include "stream_leaves.hpp"
+#include "stream_octant.hpp"
 
 namespace raylanes {
 namespace {
-
-// A list that waits at a node or a leaf. Lists made from it begin at `end`.
-struct Waiting {
-  TreeReference reference;
-  std::uint32_t begin, size, end;
-};
 
 // Fewer rays than this are traced one by one.
 inline constexpr std::uint32_t min_stream = stream_lanes < 8 ? 2 : 4;
 // Members that all waiting lists have room for together, a ray of the stream; where they do not, rays go on alone.
 inline constexpr std::size_t entries_per_ray = 48;
 
-// The leaves say what becomes of hits: StreamLeaves, or what has the same.
-template <class Test, class Leaves, class Counters>
-class Stream : Leaves {
-  using Leaves::batch_, Leaves::counters, Leaves::farthest_, Leaves::only_decides, Leaves::rays_,
-      Leaves::scale_, Leaves::tree_;
-
+template <class Counters>
+class Stream {
  public:
-  Stream(const TreeView& tree, const typename Leaves::Batch& batch, OctantRays& rays, ListEntry* entries,
-         std::size_t max_entries, int octant, float farthest)
-      : Leaves(tree, batch, rays, farthest),
+  Stream(StreamOctant<Counters>& of, ListEntry* entries, std::size_t max_entries)
+      : of_(of),
+        tree_(of.tree_),
+        rows_(of.rays_.rows),
+        prefetches_leaves_(of.calls_.prefetch_leaf != nullptr),
         entries_(entries),
-        max_entries_(max_entries),
-        octant_(octant),
-        padding_(stream_padding<Test>(tree, farthest)) {}
+        max_entries_(max_entries) {}
 
   void trace() {
-    for (std::uint32_t i = 0; i < rays_.size; ++i) entries_[i] = i;
+    const std::uint32_t size = of_.rays_.size;
+    for (std::uint32_t i = 0; i < size; ++i) entries_[i] = i;
     top_ = stack_;
-    *top_++ = {tree_.root, 0, rays_.size, rays_.size + stream_lanes};
+    *top_++ = {tree_.root, 0, size, size + stream_lanes};
     bool is_new = true;  // a list just made holds nothing that another leaf has ended
     while (top_ != stack_) {
-      Waiting at = *--top_;
-      if (Leaves::shortens_rays && !is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
+      WaitingList at = *--top_;
+      if (of_.needs_.shortens_rays && !is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
       is_new = false;
       if (at.size < min_stream)
         trace_alone(at);
       else if (refers_to_leaf(at.reference))
-        this->visit_leaf(at.reference, whole_registers(at), at.size);
+        of_.calls_.visit_leaf(of_, at.reference, whole_registers(at), at.size);
       else
         is_new = visit_node(at);
     }
-    if constexpr (requires { this->store_results(); }) this->store_results();
   }
 
  private:
@@ -62,49 +51,50 @@ class Stream : Leaves {
     for (std::uint32_t i = 0; i < size; ++i) {
       const ListEntry m = list[i];
       list[left] = m;
-      left += entry_of(m) <= rays_.rows[index_of(m)].tmax ? 1u : 0u;
+      left += entry_of(m) <= rows_[index_of(m)].tmax ? 1u : 0u;
     }
     return left;
   }
 
   // A list that may be read in whole registers: its last member again behind its end.
-  ListEntry* whole_registers(const Waiting& at) const {
+  ListEntry* whole_registers(const WaitingList& at) const {
     ListEntry* const list = entries_ + at.begin;
     for (std::uint32_t i = 0; i < stream_lanes; ++i) list[at.size + i] = list[at.size - 1];
     return list;
   }
 
   // True if a child waits on top.
-  [[gnu::noinline, gnu::flatten]] bool visit_node(const Waiting& at) {
+  [[gnu::noinline, gnu::flatten]] bool visit_node(const WaitingList& at) {
     const WideNode& node = tree_.nodes[at.reference];
     const std::uint32_t room = at.size + stream_lanes;
     if (at.end + std::size_t{tree_width} * room > max_entries_) {
       trace_alone(at);
       return false;
     }
-    counters().node();
-    OctantNode planes(node, octant_, padding_);
+    of_.counters().node();
+    OctantNode planes(node, of_.octant_, of_.padding_);
     ListEntry* list = whole_registers(at);
     ListEntry* lists[tree_width];
     for (std::uint32_t child = 0; child < tree_width; ++child)
       lists[child] = entries_ + at.end + child * room;
     for (std::uint32_t i = 0; i < at.size; i += stream_lanes)
       enter_children(planes, node.occupied, list + i, at.size - i, lists);
-    return push_children(node, at, room, lists);
+    return of_.needs_.only_decides ? push_children<false>(node, at, room, lists)
+                                   : push_children<true>(node, at, room, lists);
   }
 
   // Appends a register of rays, or the first `size`, to the lists of the children that they enter.
   void enter_children(const OctantNode& planes, std::uint32_t occupied, const ListEntry* list,
                       std::uint32_t size, ListEntry* (&lists)[tree_width]) const {
     const void* rows[stream_lanes];
-    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rays_.rows + index_of(list[lane]);
+    for (int lane = 0; lane < stream_lanes; ++lane) rows[lane] = rows_ + index_of(list[lane]);
     StreamFloats ray[row_floats];
     load_rows(rows, ray);
     StreamBits index = StreamBits::load(list) & StreamBits(index_mask);
     auto taking_part = FloatMask<stream_lanes>::first(size < stream_lanes ? size : stream_lanes);
     for (int child = 0; child < tree_width; ++child) {
       if ((occupied >> child & 1u) == 0) continue;
-      counters().boxes(first_lanes<stream_lanes>(size));
+      of_.counters().boxes(first_lanes<stream_lanes>(size));
       const auto distance = [&](const float(&plane)[3][tree_width], int axis) {
         return multiply_add<Grade::fast>(StreamFloats(plane[axis][child]), ray[axis], ray[3 + axis]);
       };
@@ -118,58 +108,39 @@ class Stream : Leaves {
   }
 
   // The nearest on top, by where the first ray of each list enters; where any hit will do, the first.
-  bool push_children(const WideNode& node, const Waiting& at, std::uint32_t room,
+  template <bool sorts>
+  bool push_children(const WideNode& node, const WaitingList& at, std::uint32_t room,
                      ListEntry* const (&ends)[tree_width]) {
-    Waiting* const base = top_;
+    WaitingList* const base = top_;
     for (std::uint32_t children = node.occupied; children != 0;) {
       const auto child = static_cast<std::uint32_t>(std::bit_width(children) - 1);
       children ^= 1u << child;
       const std::uint32_t begin = at.end + child * room,
                           size = static_cast<std::uint32_t>(ends[child] - entries_) - begin;
       if (size == 0) continue;
-      Waiting* place = top_++;
-      if constexpr (!only_decides)
+      WaitingList* place = top_++;
+      if constexpr (sorts)
         for (; place != base && entries_[place[-1].begin] < entries_[begin]; --place) *place = place[-1];
       *place = {node.child[child], begin, size, at.end + tree_width * room};
-      if constexpr (requires { this->prefetch_leaf(node.child[child]); }) {
-        if (refers_to_leaf(node.child[child])) {
-          this->prefetch_leaf(node.child[child]);
-          continue;
-        }
-      }
-      if (Leaves::reads_triangles || !refers_to_leaf(node.child[child]))
-        raylanes::prefetch<Test>(tree_, node.child[child]);
+      if (refers_to_leaf(node.child[child]) && prefetches_leaves_)
+        of_.calls_.prefetch_leaf(of_, node.child[child]);
+      else
+        raylanes::prefetch<OfCorners>(tree_, node.child[child]);
     }
     return top_ != base;
   }
 
-  [[gnu::noinline, gnu::flatten]] void trace_alone(const Waiting& at) {
-    TreeView below = tree_;
-    below.root = at.reference;
-    Counters cost = counters();
-    for (std::uint32_t k = 0; k < at.size; ++k) {
-      const std::uint32_t i = index_of(entries_[at.begin + k]);
-      const StreamRow& row = rays_.rows[i];
-      const LoneBoxes boxes(row, octant_, padding_);
-      if constexpr (Leaves::reads_triangles) {
-        const auto unpacked = [&](int first) {
-          const float back = 1.0f / scale_, *const xyz = rays_.packed[i] + first;
-          return Float3{xyz[0] * back, xyz[1] * back, xyz[2] * back};
-        };
-        const TreeRay<Test, LoneBoxes> prepared{LeafRay<Test>(unpacked(0), unpacked(3), farthest_, row.tmin),
-                                                boxes};
-        this->trace_lone(below, batch_.rays[rays_.number[i]], prepared, i, cost);
-      } else {
-        this->trace_lone(below, boxes, i, cost);
-      }
-    }
+  void trace_alone(const WaitingList& at) {
+    of_.calls_.trace_alone(of_, at.reference, entries_ + at.begin, at.size);
   }
 
+  StreamOctant<Counters>& of_;
+  const TreeView& tree_;
+  const StreamRow* const rows_;
+  const bool prefetches_leaves_;
   ListEntry* entries_;
   std::size_t max_entries_;
-  int octant_;
-  float padding_;
-  Waiting stack_[max_stack], *top_ = stack_;
+  WaitingList stack_[max_stack], *top_ = stack_;
 };
 
 }  // namespace

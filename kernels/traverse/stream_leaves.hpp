@@ -5,24 +5,10 @@
 #include "../exact/leaf_filter.hpp"
 #include "../ray/ray_state.hpp"
 #include "single.hpp"
-#include "stream_rays.hpp"
+#include "stream_hits.hpp"
 
 namespace raylanes {
 namespace {
-
-inline constexpr int stream_lanes = native_lanes;
-using StreamFloats = Floats<stream_lanes>;
-using StreamBits = FloatBits<stream_lanes>;
-
-// A member of a list: where the ray enters the box, its upper half, which is not later; and the ray's index.
-using ListEntry = std::uint32_t;
-inline constexpr std::uint32_t index_mask = 0xffffu;
-inline float entry_of(ListEntry m) {
-  return std::bit_cast<float>(m & ~index_mask);
-}
-inline std::uint32_t index_of(ListEntry m) {
-  return m & index_mask;
-}
 
 // Vectors of rays against the triangles of a leaf by a filter. Self keeps rays by their index in the octant:
 //   keep(i, t_lo, t_hi, leaf_triangle)   has a new best hit
@@ -113,28 +99,45 @@ class FilteredRays {
   }
 };
 
-template <class Test, bool only_decides_, class Counters, class Sides_ = BothSides>
+template <class Test, bool only_decides, class Counters, class Sides = BothSides>
 class StreamLeaves
-    : FilteredRays<StreamLeaves<Test, only_decides_, Counters, Sides_>, StreamFloats, only_decides_> {
-  using Filtered = FilteredRays<StreamLeaves, StreamFloats, only_decides_>;
+    : public StreamOctant<Counters>,
+      FilteredRays<StreamLeaves<Test, only_decides, Counters, Sides>, StreamFloats, only_decides> {
+  using Base = StreamOctant<Counters>;
+  using Filtered = FilteredRays<StreamLeaves, StreamFloats, only_decides>;
   friend Filtered;
+  using Base::farthest_, Base::needs_, Base::rays_, Base::tree_;
 
  public:
-  using Batch = TraceBatch;
-  using Sides = Sides_;
-  static constexpr bool only_decides = only_decides_, reads_triangles = true, shortens_rays = true,
-                        packs_numbers = false;
+  using Base::counters;
 
-  // farthest: at least the distance along an axis from any origin to a corner.
-  StreamLeaves(const TreeView& tree, const TraceBatch& batch, OctantRays& rays, float farthest)
-      : tree_(tree), batch_(batch), rays_(rays), farthest_(farthest) {}
+  StreamLeaves(const TreeView& tree, const TraceBatch& batch)
+      : Base(Base::template calls_of<StreamLeaves>,
+             {.only_decides = only_decides,
+              .packs_rays = true,
+              .packs_lengths = is_filtered<Test>,
+              .rounding = is_filtered<Test> ? 0.0f : slab_pad,
+              .scale = filter_scale<Test>(tree.bounds)},
+             tree, batch),
+        batch_(batch) {}
 
- protected:
-  Counters counters() const { return Counters(batch_); }
-  Sides sides() const { return Sides(batch_); }
-  Sides sides(std::uint32_t i) const { return Sides(batch_, rays_.number[i]); }
+  void begin() {
+    for (std::uint32_t i = 0; i < rays_.size && !only_decides; ++i)
+      if constexpr (is_filtered<Test>)
+        rays_.t_lo(i) = rays_.rows[i].tmax, rays_.leaf_triangle[i] = no_leaf_triangle;
+      else
+        rays_.hits[i] = Hit();
+  }
+  void store_results() {
+    if constexpr (is_filtered<Test> && !only_decides)
+      StreamHits(tree_, batch_, rays_, needs_.scale).store();
+    else if constexpr (!only_decides)
+      for (std::uint32_t i = 0; i < rays_.size; ++i) batch_.hits[rays_.number[i]] = rays_.hits[i];
+  }
+  void trace_single(std::size_t number) {
+    trace_singles<Test, only_decides, Counters, Sides>(tree_, part_of(batch_, number, 1));
+  }
 
-  // The list may be read in whole registers.
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
@@ -145,10 +148,24 @@ class StreamLeaves
       test_triangles(block, filter, triangles, leaf, list + i, size - i);
   }
 
+  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
+                                                   std::uint32_t size) {
+    this->each_lone(from, list, size,
+                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
+                      trace_lone(below, this->template unpacked<Test>(i, boxes), i, cost);
+                    });
+  }
+
+ private:
+  using State = typename Filtered::State;
+
+  Sides sides() const { return Sides(batch_); }
+  Sides sides(std::uint32_t i) const { return Sides(batch_, rays_.number[i]); }
+
   // A ray that goes on alone below a node.
   template <class Prepared>
-  void trace_lone(const TreeView& below, const Ray& ray, const Prepared& prepared, std::uint32_t i,
-                  Counters& cost) {
+  void trace_lone(const TreeView& below, const Prepared& prepared, std::uint32_t i, Counters& cost) {
+    const Ray& ray = batch_.rays[rays_.number[i]];
     if constexpr (only_decides) {
       auto query = any_within(rays_.rows[i].tmax, sides(i));
       trace<Test>(below, ray, prepared, query, cost);
@@ -177,15 +194,6 @@ class StreamLeaves
     rays_.rows[i].tmax = ended;
     batch_.occluded[rays_.number[i]] = 1;
   }
-
-  const TreeView& tree_;
-  const TraceBatch& batch_;
-  OctantRays& rays_;
-  float farthest_;
-  float scale_ = filter_scale<Test>(tree_.bounds);
-
- private:
-  using State = typename Filtered::State;
 
   Candidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
     const Ray& ray = batch_.rays[rays_.number[i]];
@@ -230,7 +238,7 @@ class StreamLeaves
   auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
                  [[maybe_unused]] int triangles) const {
     if constexpr (is_filtered<Test>)
-      return LeafFilter(block, triangles, farthest_, scale_);
+      return LeafFilter(block, triangles, farthest_, needs_.scale);
     else
       return 0;
   }
@@ -330,6 +338,8 @@ class StreamLeaves
       rays_.rows[i].tmax = t[lane];
     }
   }
+
+  const TraceBatch& batch_;
 };
 
 }  // namespace

@@ -93,9 +93,9 @@ struct StreamableRays {
 };
 
 // How far boxes are widened for rays whose reach is at most that: roundings, and the errors of a test whose numbers are
-// rounded; and by the tree's share of the origin, which is no farther from zero than largest + farthest.
-template <class Test>
-inline float stream_padding(const TreeView& tree, float farthest) {
+// rounded, a share of the reach; and by the tree's share of the origin, which is no farther from zero than
+// largest + farthest.
+inline float stream_padding(const TreeView& tree, float farthest, float rounding) {
   const Box& bounds = tree.bounds;
   float largest = farthest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,7 +103,7 @@ inline float stream_padding(const TreeView& tree, float farthest) {
     largest = max(Floats<1>(bounds.hi[axis]), Floats<1>(largest)).raw;
   }
   const float of_roundings = (0x1p-21f + tree.origin_share) * (largest + farthest) + 0x1p-90f + tree.padding;
-  return is_filtered<Test> ? of_roundings : of_roundings + slab_pad * farthest;
+  return of_roundings + rounding * farthest;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "stream.hpp"
+#include "stream_leaves.hpp"
 
 namespace raylanes {
 namespace {
@@ -48,28 +49,23 @@ class OctantScratch {
   std::byte* next_;
 };
 
-// The leaves say what becomes of hits; keeps_best: whether each ray has a best one, which is stored at the end.
-template <class Test, class Leaves, class Counters>
+template <class Counters>
 class Streams {
-  using Batch = typename Leaves::Batch;
-  static constexpr bool only_decides = Leaves::only_decides;
-  static constexpr bool keeps_best = std::is_same_v<Batch, TraceBatch> && !only_decides;
-
  public:
-  Streams(const TreeView& tree, const Batch& batch)
-      : tree_(tree),
-        batch_(batch),
-        scratch_(batch.scratch, batch.size),
-        full_at_(OctantScratch::full_at(batch.size)) {}
+  Streams(StreamOctant<Counters>& leaves, void* scratch)
+      : of_(leaves),
+        tree_(leaves.tree_),
+        scratch_(scratch, leaves.batch_size_),
+        full_at_(OctantScratch::full_at(leaves.batch_size_)) {}
 
-  void trace() {
-    for (std::size_t i = 0; i < batch_.size; i += stream_lanes) take_rays(i);
+  [[gnu::noinline]] void trace() {
+    for (std::size_t i = 0; i < of_.batch_size_; i += stream_lanes) take_rays(i);
     for (std::size_t o = 0; o < octants; ++o) trace_octant(o);
   }
 
  private:
   [[gnu::noinline, gnu::flatten]] void take_rays(std::size_t first) {
-    const std::size_t left = batch_.size - first;
+    const std::size_t left = of_.batch_size_ - first;
     RayColumns columns = columns_from(first, left);
     StreamableRays<stream_lanes> streamable(columns, tree_.bounds);
     const std::uint32_t taking_part = first_lanes<stream_lanes>(left);
@@ -90,140 +86,72 @@ class Streams {
       rows[lane] = octant.rows + octant.size, packed[lane] = octant.packed + octant.size;
       ++octant.size;
       full |= octant.size >= full_at_;
-      if constexpr (only_decides) batch_.occluded[number] = 0;
     }
     store_rows(rows, streamable.row);
-    if constexpr (Leaves::reads_triangles) store_packed(columns, numbers, packed);
+    if (of_.needs_.packs_rays) store_packed(columns, numbers, packed);
     for (std::uint32_t others = taking_part & ~taken; others != 0; others &= others - 1)
-      trace_alone(first + static_cast<std::size_t>(std::countr_zero(others)));
+      of_.calls_.trace_single(of_, first + static_cast<std::size_t>(std::countr_zero(others)));
     for (std::size_t o = 0; full && o < octants; ++o)
       if (scratch_.octant[o].size >= full_at_) trace_octant(o);
   }
   // The columns of the rays from `first` on; `left` is their number. A batch may move rays first.
   RayColumns columns_from(std::size_t first, std::size_t left) const {
+    if (of_.calls_.move != nullptr) [[unlikely]]
+      return moved_columns(first, left);
     const Ray* rays[stream_lanes];
-    if constexpr (requires { Batch::moves_rays; }) {
-      Ray moved[stream_lanes];
-      for (std::size_t lane = 0; lane < stream_lanes; ++lane)
-        batch_.move(first + (lane < left ? lane : left - 1), moved[lane]), rays[lane] = moved + lane;
-      return RayColumns(rays);
-    } else {
-      for (std::size_t lane = 0; lane < stream_lanes; ++lane)
-        rays[lane] = batch_.rays + first + (lane < left ? lane : left - 1);
-      return RayColumns(rays);
-    }
+    for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+      rays[lane] = of_.batch_rays_ + first + (lane < left ? lane : left - 1);
+    return RayColumns(rays);
+  }
+  [[gnu::noinline]] RayColumns moved_columns(std::size_t first, std::size_t left) const {
+    const Ray* rays[stream_lanes];
+    Ray moved[stream_lanes];
+    for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+      of_.calls_.move(of_, first + (lane < left ? lane : left - 1), moved[lane]), rays[lane] = moved + lane;
+    return RayColumns(rays);
   }
   void store_packed(const RayColumns& columns, const std::uint32_t (&numbers)[stream_lanes],
                     void* const (&packed)[stream_lanes]) {
     StreamFloats packed_rays[row_floats];
-    pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(scale_), packed_rays);
-    if constexpr (is_filtered<Test>) packed_rays[6] = length_above(vec3(packed_rays + 3));
-    if constexpr (Leaves::packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
+    pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(of_.needs_.scale), packed_rays);
+    if (of_.needs_.packs_lengths) packed_rays[6] = length_above(vec3(packed_rays + 3));
+    if (of_.needs_.packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
     store_rows(packed, packed_rays);
   }
 
   void trace_octant(std::size_t o) {
     OctantRays& rays = scratch_.octant[o];
     if (rays.size == 0) return;
-    if constexpr (keeps_best) start(rays);
     float farthest[stream_lanes], largest = 0.0f;
     farthest_.store(farthest);
     for (const float x : farthest) largest = x > largest ? x : largest;
-    Stream<Test, Leaves, Counters>(tree_, batch_, rays, scratch_.entries, scratch_.max_entries,
-                                   static_cast<int>(o), largest)
-        .trace();
-    if constexpr (keeps_best) store_hits(rays);
+    of_.rays_ = rays, of_.octant_ = static_cast<int>(o), of_.farthest_ = largest;
+    of_.padding_ = stream_padding(tree_, largest, of_.needs_.rounding);
+    of_.calls_.begin(of_);
+    Stream<Counters>(of_, scratch_.entries, scratch_.max_entries).trace();
+    of_.calls_.store_results(of_);
     rays.size = 0;
   }
-  static void start(OctantRays& rays) {
-    for (std::uint32_t i = 0; i < rays.size; ++i)
-      if constexpr (is_filtered<Test>)
-        rays.t_lo(i) = rays.rows[i].tmax, rays.leaf_triangle[i] = no_leaf_triangle;
-      else
-        rays.hits[i] = Hit();
-  }
-  void store_hits(const OctantRays& rays) {
-    if constexpr (is_filtered<Test>)
-      store_winners(rays);
-    else
-      for (std::uint32_t i = 0; i < rays.size; ++i) batch_.hits[rays.number[i]] = rays.hits[i];
-  }
 
-  [[gnu::noinline, gnu::flatten]] void store_winners(const OctantRays& rays) {
-    const TreeTriangles triangles(tree_);
-    for (std::uint32_t i = 0; i < rays.size; i += stream_lanes) {
-      const std::uint32_t left = rays.size - i;
-      prefetch(rays, i + stream_lanes);
-      store_numbers(triangles, rays, i, left < stream_lanes ? left : stream_lanes);
-    }
-  }
-  // Lanes without a hit take part with any triangle.
-  void store_numbers(const TreeTriangles& triangles, const OctantRays& rays, std::uint32_t first,
-                     std::uint32_t size) {
-    const void* from[stream_lanes];
-    void* to[stream_lanes];
-    Hit spare;
-    alignas(64) float corner[9][stream_lanes];
-    alignas(64) std::uint32_t primitive[stream_lanes];
-    std::uint32_t hit = 0;
-    for (std::uint32_t lane = 0; lane < stream_lanes; ++lane) {
-      const std::uint32_t i = first + (lane < size ? lane : 0);
-      const bool is_hit = rays.leaf_triangle[i] != no_leaf_triangle;
-      const std::uint32_t leaf_triangle = is_hit ? rays.leaf_triangle[i] : 0;
-      from[lane] = rays.packed + i;
-      to[lane] = lane < size ? batch_.hits + rays.number[i] : &spare;
-      for (int k = 0; k < 9; ++k) corner[k][lane] = triangles.number(k, leaf_triangle);
-      primitive[lane] = is_hit ? triangles.primitive(leaf_triangle) : no_primitive;
-      hit |= (is_hit ? 1u : 0u) << lane;
-    }
-    StreamFloats packed[row_floats];
-    load_rows(from, packed);
-    for (int k = 0; k < 6; ++k) packed[k] = packed[k] * StreamFloats(1.0f / scale_);
-    const auto numbers = rounded_numbers<stream_lanes>(vec3(packed), vec3(packed + 3), corner);
-    const auto is_hit = FloatMask<stream_lanes>::from_bits(hit);
-    const Hit none;
-    const StreamFloats row[4] = {select(is_hit, numbers.t.value, StreamFloats(none.t)),
-                                 select(is_hit, numbers.u.value, StreamFloats(none.u)),
-                                 select(is_hit, numbers.v.value, StreamFloats(none.v)),
-                                 as<float>(StreamBits::load(primitive))};
-    store_rows(to, row);
-    for (std::uint32_t unclear = hit & ~bits(numbers.are_clear()) & first_lanes<stream_lanes>(size);
-         unclear != 0; unclear &= unclear - 1) {
-      const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(unclear));
-      batch_.hits[rays.number[i]] = exact_hit(triangles, batch_.rays[rays.number[i]], rays.leaf_triangle[i]);
-    }
-  }
-
-  // Prefetches what the winners from there on will need.
-  void prefetch(const OctantRays& rays, std::uint32_t first) const {
-    for (std::uint32_t i = first; i < first + stream_lanes && i < rays.size; ++i)
-      if (rays.leaf_triangle[i] != no_leaf_triangle) TreeTriangles(tree_).prefetch(rays.leaf_triangle[i]);
-  }
-
-  void trace_alone(std::size_t number) {
-    if constexpr (std::is_same_v<Batch, TraceBatch>)
-      trace_singles<Test, only_decides, Counters, typename Leaves::Sides>(tree_, part_of(batch_, number, 1));
-    else
-      Leaves::trace_single(tree_, batch_, number);
-  }
-
+  StreamOctant<Counters>& of_;
   const TreeView& tree_;
-  const Batch& batch_;
   OctantScratch scratch_;
   std::size_t full_at_;
-  float scale_ = filter_scale<Test>(tree_.bounds);
   StreamFloats farthest_{0.0f};  // of the rays taken so far
 };
 
 template <class Test, class Counters, class Sides = BothSides>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, false, Counters, Sides>(tree, batch);
-  Streams<Test, StreamLeaves<Test, false, Counters, Sides>, Counters>(tree, batch).trace();
+  StreamLeaves<Test, false, Counters, Sides> leaves(tree, batch);
+  Streams(leaves, batch.scratch).trace();
 }
 template <class Test, class Counters, class Sides = BothSides>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, true, Counters, Sides>(tree, batch);
-  Streams<Test, StreamLeaves<Test, true, Counters, Sides>, Counters>(tree, batch).trace();
+  __builtin_memset(batch.occluded, 0, batch.size);
+  StreamLeaves<Test, true, Counters, Sides> leaves(tree, batch);
+  Streams(leaves, batch.scratch).trace();
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a packet's walk and its leaves share: its groups of rays, and which of them may meet some boxes or triangles. The
-// walk is compiled once for all leaves, and calls these by a table.
+// The state that the walk of a packet and its leaves share: groups of rays, and which of them may meet what.
+// The walk is compiled once for all leaves, and calls these by a table.
 #pragma once
 
 #include "../node_test.hpp"
@@ -30,7 +30,7 @@ class PacketGroups {
   using Counters = Counters_;
   using Waiting = Waiting_;
 
-  // What leaves do, as functions of the derived class.
+  // The functions of the derived class.
   struct Calls {
     void (*begin)(PacketGroups&);  // all groups are there, not yet their ranges
     void (*visit_leaf)(PacketGroups&, const Waiting&);
@@ -136,7 +136,7 @@ class PacketGroups {
   float rounding_;
   [[no_unique_address]] Counters counters_;
   Groups<apex>& groups_;
-  // Of the packet:
+  // For each packet:
   PacketFrame frame_{Float3{}, CubeFace{}, 0.0f, 0.0f};
   float reach_ = 0.0f;
   Around<apex, float> all_{};
