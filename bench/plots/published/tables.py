@@ -111,18 +111,21 @@ def lines_of(row):
 
 
 def sizes_table(results):
-    """Nearest hits by the number of triangles: batches, and one ray a call."""
-    def line(triangles, rays):
-        def row(mode):
-            return results.one(triangles=triangles, rays=rays, mode=mode)
-        batch, call = row('automatic'), row('call')
-        return [f'{triangles:,}', KINDS[rays], f"{1e3 / batch['mrays_per_second']:.0f}", f"{batch['ratio']:.2f}",
-                f"{1e3 / call['mrays_per_second']:.0f}", f"{call['ratio']:.2f}", f"{lines_of(row('single')):.0f}",
-                f"{batch['bytes'] / triangles:.0f}"]
+    """Rays by the number of triangles: batches of two sizes of picture, and one ray a call."""
+    small, large = sorted(results.names('pixels'))
 
-    return table(['triangles', 'rays', 'batch, ns', '× Embree', 'calls, ns', '× Embree', 'lines a ray',
-                  'bytes a triangle'],
-                 [line(triangles, rays) for triangles in results.names('triangles') for rays in ('primary', 'diffuse')])
+    def line(scene, triangles, rays):
+        def row(mode, pixels=large):
+            return results.one(scene=scene, triangles=triangles, rays=rays, mode=mode, pixels=pixels)
+        batch, call = row('automatic'), row('call')
+        return [f'{scene}, {triangles:,}', KINDS[rays], f"{1e3 / batch['mrays_per_second']:.0f}",
+                f"{batch['ratio']:.2f}", f"{row('automatic', small)['ratio']:.2f}",
+                f"{1e3 / call['mrays_per_second']:.0f}", f"{call['ratio']:.2f}",
+                f"{lines_of(row('single')):.0f}", f"{batch['bytes'] / triangles:.0f}"]
+
+    cases = dict.fromkeys((row['scene'], row['triangles'], row['rays']) for row in results.rows)
+    return table(['scene, triangles', 'rays', 'batch, ns', '× Embree', f'× Embree, {small:,} pixels', 'calls, ns',
+                  '× Embree', 'lines a ray', 'bytes a triangle'], [line(*case) for case in cases])
 
 
 def modes_table(results):
