@@ -170,7 +170,7 @@ def python_passes(program, build, limit):
 
 def compile_error(mutant, place, tree, limit):
     """Compiles a mutant to mutant.o in that folder; returns why that fails, or None."""
-    for room in ('kernels', 'dispatch', 'accel', 'python', 'bench'):
+    for room in ('include', 'kernels', 'dispatch', 'accel', 'python', 'bench'):
         shutil.copytree(ROOT / room, tree / room)
     text = (tree / mutant.file).read_text()
     (tree / mutant.file).write_text(mutant.mutated(text))
