@@ -64,7 +64,7 @@ FOLDERS = {
     'accel/mesh': ('', ('test_bvh', 'test_points', 'test_queries')),
     'accel/queries': ('', ('test_queries', 'test_points')),
     'accel/scene': ('', ('test_scenes',)),
-    'accel/trees': ('', ('test_builders', 'test_doubles') + TREES),
+    'accel/trees': ('', ('test_builders', 'test_doubles', 'test_queries') + TREES),
     'python/native': ('', ('python_arrays', 'python_trees', 'python_doubles', 'python_scene_hits',
                            'python_scene_changes', 'python_sharing', 'python_skip', 'python_sphere_trees')),
 }
