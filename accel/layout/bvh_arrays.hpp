@@ -1,4 +1,4 @@
-// From a binary tree to a wide one.
+// From a mesh, by a binary tree, to the wide tree that is traced.
 #pragma once
 
 #include <vector>
@@ -74,5 +74,8 @@ struct NodesOverRanges {
 // can: the tree's order alone remains.
 NodesOverRanges collapse_nodes(BinaryTree& binary, const BuildRun& run);
 BvhArrays collapse_to_bvh(BinaryTree binary, const LeafSource& source, const BuildRun& run);
+
+// Builds as the constructor of Bvh says.
+BvhArrays build_bvh(VertexView vertices, IndexView triangles, const BuildOptions& options);
 
 }  // namespace raylanes

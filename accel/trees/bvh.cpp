@@ -1,10 +1,10 @@
 #include <raylanes/bvh.hpp>
 
 #include "../batch/routing.hpp"
+#include "../layout/bvh_arrays.hpp"
 #include "../layout/cost.hpp"
 #include "../layout/tree_report.hpp"
 #include "../queries/traced_tree.hpp"
-#include "bvh_build.hpp"
 
 namespace raylanes {
 TracedTree TreeOf::bvh(const Bvh& bvh) {

@@ -1,8 +1,7 @@
-#include "bvh_build.hpp"
-
 #include "../builders/builder_table.hpp"
 #include "../builders/choice.hpp"
 #include "../builders/mesh_build.hpp"
+#include "../layout/bvh_arrays.hpp"
 #include "../layout/cost.hpp"
 
 namespace raylanes {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../accel/trees/bvh_build.hpp"
+#include "../../accel/layout/bvh_arrays.hpp"
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"

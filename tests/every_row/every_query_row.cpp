@@ -1,38 +1,17 @@
-// The rows of closest points, of boundaries, and of lists, crossings and next hits: the bytes of scalar, whatever order
-// lists come in.
+// The rows of boundaries, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
 #include <set>
 
-#include <raylanes/points.hpp>
-
 #include "../../accel/mesh/boundary_tree.hpp"
-#include "../../accel/trees/bvh_build.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
-#include "../../dispatch/table/points.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../../dispatch/table/winding.hpp"
-#include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
 #include "every_row.hpp"
+#include "small_tree.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-struct Tree {
-  BvhArrays wide;
-  TreeView view;
-
-  Tree() {
-    Mesh mesh;
-    for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
-    wide = build_bvh(mesh.vertices, mesh.triangles, {});
-    view = wide.view();
-  }
-};
-
-struct alignas(64) Line {
-  std::byte byte[64];
-};
 
 using Lister = std::size_t (*)(const TreeView& tree, const ListBatch& batch);
 using Bytes = std::size_t (*)(std::size_t rays, std::size_t room);
@@ -71,7 +50,7 @@ template <class Entry>
 void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::vector<Ray>& rays,
                    ListKind kind, ListStop stop, Bytes scratch_bytes = nullptr) {
   if (!every.offers(mine, of_scalar)) return;
-  const Tree tree;
+  const SmallTree tree;
   TraceCounters my_counters, scalar_counters;
   const auto lists = lists_of<Entry>(mine, tree.view, rays, kind, stop, scratch_bytes, my_counters),
              scalar = lists_of<Entry>(of_scalar, tree.view, rays, kind, stop, scratch_bytes, scalar_counters);
@@ -87,7 +66,7 @@ void compare_lists(EveryRow& every, Lister mine, Lister of_scalar, const std::ve
 // Counts with the least room, which lists of some rays outgrow, against sums of lists.
 void compare_counts(EveryRow& every, Lister mine, Lister of_scalar, Bytes scratch_bytes = nullptr) {
   if (!every.offers(mine, of_scalar)) return;
-  const Tree tree;
+  const SmallTree tree;
   const std::vector<Ray> rays = some_rays();
   constexpr std::size_t room = 16;
   TraceCounters counters;
@@ -122,7 +101,7 @@ std::vector<Ray> rays_along_axes() {
 
 void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar) {
   if (!every.offers(mine.next, of_scalar.next)) return;
-  const Tree tree;
+  const SmallTree tree;
   const std::vector<Ray> rays = some_rays();
   std::vector<Hit> last(most, Hit{-infinity, 0, 0, 0}), found(most), scalar(most);
   for (int layer = 0; layer < 3; ++layer) {
@@ -143,7 +122,7 @@ void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRo
   const bool has_closest = every.offers(mine.closest, of_scalar.closest);
   every.offers(mine.any, of_scalar.any), every.offers(mine.scratch_bytes, of_scalar.scratch_bytes);
   if (!has_closest) return;
-  const Tree tree;
+  const SmallTree tree;
   const std::vector<Ray> rays = some_rays();
   std::vector<Line> scratch(bytes / sizeof(Line) + 1);
   std::vector<std::vector<Hit>> of_sides;
@@ -177,7 +156,7 @@ void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRo
 void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
                     std::size_t bytes, bool share_origin) {
   if (!every.offers(mine.visit, of_scalar.visit)) return;
-  const Tree tree;
+  const SmallTree tree;
   std::vector<Ray> rays = some_rays();
   if (share_origin)
     for (Ray& ray : rays) ray.origin = {0.1f, -0.2f, 0.3f};
@@ -290,80 +269,6 @@ TEST_P(EveryRow, of_queries) {
     offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together
   }
   expect_all_called(mine.plain), expect_all_called(mine.counted);
-}
-
-void compare_trees(EveryRow& every, void (*mine)(const TreeView&, const PointBatch&),
-                   void (*of_scalar)(const TreeView&, const PointBatch&)) {
-  if (!every.offers(mine, of_scalar)) return;
-  const Tree tree;
-  Source source(5);
-  std::vector<Float3> points;
-  for (std::size_t i = 0; i < most; ++i) points.push_back(source.point(i % 2 == 0 ? 1 : 5));
-  // These go together.
-  for (std::size_t i = most / 3; i < most; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      points[i][axis] = points[0][axis] + 0x1p-6f * points[i][axis];
-  points[7][1] = infinity;
-  for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
-    for (const double max_distance : {double{infinity}, 0.1}) {
-      std::vector<ClosestPoint> found(most), scalar(most);
-      TraceCounters counters;
-      PointBatch batch;
-      batch.points = reinterpret_cast<const std::byte*>(points.data()), batch.stride = sizeof(Float3);
-      batch.end = most, batch.active = active, batch.max_distance = max_distance, batch.counters = &counters;
-      batch.closest = found.data(), mine(tree.view, batch);
-      batch.closest = scalar.data(), of_scalar(tree.view, batch);
-      EXPECT_TRUE(same_bytes(found, scalar));
-    }
-}
-
-void compare_single_points(EveryRow& every, const PointKernels& mine, const PointKernels& of_scalar) {
-  if (!every.offers(mine.closest_of_point, of_scalar.closest_of_point)) return;
-  const Tree tree;
-  Source source(7);
-  for (std::size_t i = 0; i < most; ++i)
-    for (const double max_distance : {double{infinity}, 0.1, -1.0}) {
-      const Float3 point = source.point(i % 2 == 0 ? 1 : 5);
-      ClosestPoint found, expected;
-      mine.closest_of_point(tree.view, point, max_distance, found);
-      of_scalar.closest_of_point(tree.view, point, max_distance, expected);
-      EXPECT_TRUE(same_bytes(found, expected)) << "point " << i;
-    }
-}
-
-struct Distances {
-  std::vector<float> number[6] = {std::vector<float>(most, untouched), std::vector<float>(most, untouched),
-                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched),
-                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched)};
-  PointDistances of(std::size_t n) {
-    const auto span = [&](std::size_t k) { return std::span(number[k]).first(n); };
-    return {span(0), {span(1), span(2), span(3)}, span(4), span(5)};
-  }
-};
-
-TEST_P(EveryRow, of_points) {
-  const TriangleColumns triangles;
-  Source source(6);
-  for (std::size_t i = 0; i < most; i += 6)
-    for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
-      for (const std::size_t n : sizes) {
-        const Float3 point = source.point(2);
-        Distances mine, of_scalar;
-        distances(point, triangles.arrays(n), mine.of(n), {.path = &path(), .active = active});
-        distances(point, triangles.arrays(n), of_scalar.of(n), {.path = &scalar(), .active = active});
-        for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE(same_bytes(mine.number[k], of_scalar.number[k]));
-        const ClosestPoint found =
-                               closest_point(point, triangles.arrays(n), {.path = &path(), .active = active}),
-                           expected = closest_point(point, triangles.arrays(n),
-                                                    {.path = &scalar(), .active = active});
-        EXPECT_TRUE(same_bytes(found, expected));
-      }
-  count(2);
-  const PointKernels &mine = kernels_of(path()).points, &of_scalar = kernels_of(scalar()).points;
-  compare_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
-  compare_trees(*this, mine.counted, of_scalar.counted);
-  compare_single_points(*this, mine, of_scalar);
-  expect_all_called(std::array{mine.closest_in_tree, mine.counted});
 }
 
 }  // namespace

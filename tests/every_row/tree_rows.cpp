@@ -1,20 +1,15 @@
 // The rows of traversals: of BVHs, with counters or without, and of k-d trees.
 #include "../../accel/layout/kdtree_arrays.hpp"
-#include "../../accel/trees/bvh_build.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "../../dispatch/table/traversal.hpp"
-#include "../support/meshes.hpp"
 #include "every_row.hpp"
+#include "small_tree.hpp"
 
 namespace raylanes::testing {
 namespace {
 
 const Float3 eye{0.1f, 0.2f, 2.5f};
-
-struct alignas(64) Line {
-  std::byte byte[64];
-};
 
 // The results of a row for a batch, and whether it counted anything.
 struct Traced {
@@ -38,18 +33,10 @@ struct Traced {
   }
 };
 
-// The trees, and the view that rows get.
-struct Trees {
-  Mesh mesh;
-  BvhArrays wide;
-  KdTreeArrays cells;
-  TreeView view[2];  // with cells or without
-  Trees() {
-    for (const Triangle& triangle : some_triangles()) append(mesh, triangle);
-    wide = build_bvh(mesh.vertices, mesh.triangles, {});
-    cells = build_kdtree(mesh.vertices, mesh.triangles, {});
-    view[0] = wide.view(), view[1] = cells.view();
-  }
+// The trees, and the views that rows get: without cells and with them.
+struct Trees : SmallTree {
+  KdTreeArrays cells = build_kdtree(mesh.vertices, mesh.triangles, {});
+  TreeView views[2] = {view, cells.view()};
 };
 
 // Rays with nothing in common, rays that begin at a point and rays that end there.
@@ -68,13 +55,13 @@ template <class Row>
 void check_row(const Row& row, const Row& of_scalar, TriangleTest test, bool same_bits, bool cells) {
   const std::vector<Triangle> triangles = some_triangles();
   const Trees trees;
-  TreeView waits = trees.view[0];
+  TreeView waits = trees.views[0];
   waits.rays_wait = true;  // single rays of a batch fly
   std::size_t compared = 0, all_rays = 0;
   for (const auto& [rays, shared_point] : batches()) {
-    const Traced mine(row, trees.view[cells], rays, shared_point),
-        scalar(of_scalar, trees.view[cells], rays, shared_point),
-        flown(row, cells ? trees.view[1] : waits, rays, shared_point);
+    const Traced mine(row, trees.views[cells], rays, shared_point),
+        scalar(of_scalar, trees.views[cells], rays, shared_point),
+        flown(row, cells ? trees.views[1] : waits, rays, shared_point);
     EXPECT_TRUE(same_bytes(flown.hits, mine.hits) && flown.occluded == mine.occluded);
     EXPECT_EQ(mine.counters.triangle_tests == 0, scalar.counters.triangle_tests == 0);
     for (std::size_t i = 0; i < most; ++i) {
@@ -119,13 +106,13 @@ void check_nearest_triangles(EveryRow& every, const TraversalKernels& rows,
                              const TraversalKernels& of_scalar) {
   if (!every.offers(rows.nearest_triangle, of_scalar.nearest_triangle)) return;
   const Trees trees;
-  const auto* const blocks = static_cast<const LeafBlock<9>*>(trees.view[0].blocks);
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(trees.views[0].blocks);
   const CallRow& call = rows.call.row[static_cast<std::size_t>(TriangleTest::exact)][0];
   std::size_t found = 0;
   for (const Ray& ray : some_rays()) {
-    const std::uint32_t triangle = rows.nearest_triangle(trees.view[0], ray);
-    EXPECT_EQ(triangle, of_scalar.nearest_triangle(trees.view[0], ray));
-    const Hit hit = call.closest(trees.view[0], ray);
+    const std::uint32_t triangle = rows.nearest_triangle(trees.views[0], ray);
+    EXPECT_EQ(triangle, of_scalar.nearest_triangle(trees.views[0], ray));
+    const Hit hit = call.closest(trees.views[0], ray);
     ASSERT_EQ(triangle != ~0u, static_cast<bool>(hit));
     if (!hit) continue;
     EXPECT_EQ(blocks[triangle / tree_width].primitive[triangle % tree_width], hit.primitive);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "../../accel/trees/bvh_build.hpp"
+#include "../../accel/layout/bvh_arrays.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

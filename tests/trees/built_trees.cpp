@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../accel/trees/bvh_build.hpp"
+#include "../../accel/layout/bvh_arrays.hpp"
 #include "../../bench/support/oracles/exact_hit.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
