@@ -16,28 +16,29 @@
 
 namespace raylanes {
 
-// Eleven objects a path, each from a translation unit of its own, built with the flags of its path, become one table: a
-// constant before main. Counters may come from another path with the same instructions, as the build says.
+// The objects of a path, each from a translation unit of its own, built with the flags of its path, become one table: a
+// constant before main. Some come from another path with the same instructions, as the build says.
 #define RAYLANES_JOIN(a, b) a##b
-#define RAYLANES_COUNTED(path) detail::RAYLANES_JOIN(RAYLANES_COUNTS_, path)
-#define RAYLANES_PATH(path)                                                            \
-  namespace RAYLANES_COUNTED(path) {                                                   \
-    extern const TraversalKernels counted;                                             \
-  }                                                                                    \
-  namespace detail::path {                                                             \
-  extern const RootKernels roots;                                                      \
-  extern const TriangleKernels triangles;                                              \
-  extern const BoxKernels boxes;                                                       \
-  extern const SphereKernels spheres;                                                  \
-  extern const TraversalKernels traversal;                                             \
-  extern const KdKernels kdtree;                                                       \
-  extern const PointKernels points;                                                    \
-  extern const WindingKernels winding;                                                 \
-  extern const AllQueryKernels queries;                                                \
-  extern const DoubleRayKernels doubles;                                               \
-  constexpr KernelTable kernels{                                                       \
-      roots,  triangles, boxes,   spheres, traversal, RAYLANES_COUNTED(path)::counted, \
-      kdtree, points,    winding, queries, doubles};                                   \
+#define RAYLANES_SHARED(path) detail::RAYLANES_JOIN(RAYLANES_INSTRUCTIONS_OF_, path)
+#define RAYLANES_PATH(path)                                                                        \
+  namespace RAYLANES_SHARED(path) {                                                                \
+    extern const TraversalKernels counted;                                                         \
+    extern const PointKernels points;                                                              \
+    extern const WindingKernels winding;                                                           \
+    extern const AllQueryKernels queries;                                                          \
+    extern const DoubleRayKernels doubles;                                                         \
+  }                                                                                                \
+  namespace detail::path {                                                                         \
+  extern const RootKernels roots;                                                                  \
+  extern const TriangleKernels triangles;                                                          \
+  extern const BoxKernels boxes;                                                                   \
+  extern const SphereKernels spheres;                                                              \
+  extern const TraversalKernels traversal;                                                         \
+  extern const KdKernels kdtree;                                                                   \
+  namespace shared = RAYLANES_SHARED(path);                                                        \
+  constexpr KernelTable kernels{roots,           triangles,       boxes,           spheres,        \
+                                traversal,       kdtree,          shared::counted, shared::points, \
+                                shared::winding, shared::queries, shared::doubles};                \
   }
 RAYLANES_EACH_PATH(RAYLANES_PATH)
 

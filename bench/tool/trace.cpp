@@ -153,6 +153,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const SceneTrace& tr
                  {"isa", row.isa},
                  {"threads", options.trace.threads},
                  {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
+                 {"warm", options.warm},
                  {"rounds_mrays_per_second", row.rounds_mrays_per_second},
                  {"build_seconds", row.build_seconds},
                  {"bytes", row.bytes}},
@@ -335,6 +336,8 @@ void add_trace_command(CLI::App& tool) {
              "order of pixels; secondary rays follow them");
   add_numbers(*command, "--batch", trace.batches, {0, max_batch},
               "rays in each call of ours, such as 65536,4096,256; 0: all at once");
+  command->add_flag("--warm", trace.warm,
+                    "trace the rays once more before each clock, so that caches hold the contender's tree");
   command->add_flag("--doubles", options->doubles,
                     "the same rays and rays towards edges, as doubles through a tree of doubles");
   add_number(*command, "--offset", options->offset, {0, 1e15},

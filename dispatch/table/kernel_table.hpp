@@ -22,17 +22,18 @@ struct WindingKernels;
 struct AllQueryKernels;
 struct DoubleRayKernels;
 
-// The objects of one path, each from a translation unit of its own (kernels/*/).
+// The objects of a path, each from a translation unit of its own (kernels/*/).
 struct KernelTable {
   const RootKernels& roots;
   const TriangleKernels& triangles;
   const BoxKernels& boxes;
   const SphereKernels& spheres;
   const TraversalKernels& traversal;
-  // The same text once more, with counters: the same bytes of answers, and what they cost. Null where a test is not
-  // counted, and all of them where the build was asked for no counters. Paths with the same instruction set share it.
-  const TraversalKernels& counted;
   const KdKernels& kdtree;
+  // The rest is compiled once for each instruction set: paths by Highway have that of xsimd's path, if it is built.
+  // The text of `traversal` once more, with counters: the same bytes of answers, and what they cost. Null where a test
+  // is not counted, and all of them where the build was asked for no counters.
+  const TraversalKernels& counted;
   const PointKernels& points;
   const WindingKernels& winding;
   const AllQueryKernels& queries;

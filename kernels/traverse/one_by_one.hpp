@@ -28,13 +28,14 @@ inline const LeafBlock<Test::floats>& leaf_block(const TreeView& tree, TreeRefer
 inline std::uint32_t leaf_triangle_of(TreeReference leaf, int triangle) {
   return leaf_of(leaf).block * tree_width + static_cast<std::uint32_t>(triangle);
 }
-// Asks for a node, or for the begin of a leaf, ahead of time.
+// Asks for a node or a leaf ahead of time.
 template <class Test>
 inline void prefetch(const TreeView& tree, TreeReference reference) {
-  const auto* const lines = refers_to_leaf(reference)
-                                ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree, reference))
-                                : reinterpret_cast<const std::byte*>(tree.nodes + reference);
+  const bool is_leaf = refers_to_leaf(reference);
+  const auto* const lines = is_leaf ? reinterpret_cast<const std::byte*>(&leaf_block<Test>(tree, reference))
+                                    : reinterpret_cast<const std::byte*>(tree.nodes + reference);
   for (std::size_t at = 0; at < sizeof(WideNode); at += 64) __builtin_prefetch(lines + at);
+  if (is_leaf) __builtin_prefetch(lines + sizeof(WideNode));
 }
 
 template <class V, class Axes>

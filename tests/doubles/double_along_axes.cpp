@@ -29,7 +29,7 @@ TEST(DoublesAlongAxes, have_the_hits_and_crossings_of_rational_numbers) {
     crossed.push_back(exact_double_crossings(wide, ray));
   }
   const BvhD tree(wide.vertices, wide.triangles);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const FloatMode mode : float_modes) {
       const FloatModeScope scope(mode);
       std::vector<HitD> hits(rays.size());

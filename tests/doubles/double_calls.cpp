@@ -75,7 +75,7 @@ TEST(DoubleCalls, inactive_rays_are_left_alone) {
 
 TEST(DoubleCalls, batches_of_any_size_end_where_they_end) {
   const Sample sample;
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (std::size_t n = 0; n < 40; ++n) {
       GuardedArray<RayD> rays(n, Place::before_guard);
       GuardedArray<HitD> hits(n, Place::before_guard);
@@ -138,7 +138,7 @@ TEST(DoubleCalls, rays_that_are_none_miss) {
 // With subnormal numbers taken for zeros nothing changes for numbers of ordinary size.
 TEST(DoubleCalls, flushing_changes_nothing_of_ordinary_size) {
   const Sample sample;
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     std::vector<HitD> hits(sample.rays.size());
     {
       const FloatModeScope flush(FloatMode::flush);

@@ -34,7 +34,7 @@ TEST(DoubleLists, cut_are_the_first_of_all) {
     const BvhD tree(c.mesh.vertices, c.mesh.triangles);
     for (const Facing facing : {Facing::any, Facing::back}) {
       const RayLists<HitD> all = tree.all_hits(c.rays, {.facing = facing});
-      for (const Path* path : supported_paths())
+      for (const Path* path : paths_with_own_queries())
         for (const std::uint32_t most : {0u, 1u, 2u, 5u, 64u, 65u}) {
           const RayLists<HitD> some =
               tree.all_hits(c.rays, {.max_count = most, .facing = facing, .path = path});
@@ -51,7 +51,7 @@ TEST(DoubleLists, cut_are_the_first_of_all) {
 TEST(DoubleLists, of_a_few_hits_end_the_search) {
   const DoubleMesh mesh = stack();
   const BvhDArrays tree = build_bvh_d(mesh.vertices, mesh.triangles, {});
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const std::uint32_t most : {1u, 3u, 64u}) {
       std::vector<ListEntryOf<double>> list(300);
       std::vector<HitD> hits(list.size());

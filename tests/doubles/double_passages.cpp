@@ -56,7 +56,7 @@ void expect_passages(const KnownRays& known, Facing facing, bool skips) {
   const std::vector<RayD>& rays = known.of.rays;
   std::vector<std::vector<HitD>> expected;
   for (std::size_t i = 0; i < rays.size(); ++i) expected.push_back(known.passages(i, facing, skips));
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const int threads : {1, 2}) {
       TraceOptionsD options{.path = path, .threads = threads, .facing = facing};
       if (skips) options.skip = known.skip;

@@ -31,7 +31,7 @@ void expect_exact_locations(const DoubleMesh& mesh, std::size_t count, std::uint
   EXPECT_GT(found[1], 9u);
   EXPECT_GE(found[2], mesh.vertices.size());
   const BvhD tree(mesh.vertices, mesh.triangles);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero, InsideRule::vote}) {
       std::vector<Location> locations(points.size());
       tree.locate(points, locations, {.rule = rule, .path = path, .threads = 2});
@@ -66,7 +66,7 @@ TEST(DoublePlaces, in_a_cube_of_all_doubles) {
   std::vector<Double3> points;
   for (std::size_t i = 0; i < by_level(1000); ++i)
     points.push_back({half * random.real(-1, 1), half * random.real(-1, 1), half * random.real(-1, 1)});
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero, InsideRule::vote}) {
       std::vector<Location> locations(points.size());
       tree.locate(points, locations, {.rule = rule, .path = path});

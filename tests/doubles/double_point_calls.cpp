@@ -21,7 +21,7 @@ TEST(DoubleClosestPoints, keep_to_the_most_distance) {
     const DoubleMesh mesh = moved(triangle_soup(60, 0.3f, 2717), factor, {0, 0, 0});
     const std::vector<Double3> points = points_for(mesh, 60, 28);
     const BvhD tree(mesh.vertices, mesh.triangles);
-    for (const Path* path : supported_paths())
+    for (const Path* path : paths_with_own_queries())
       for (const Double3& point : points) {
         const ClosestPointD found = tree.closest_point(point, {.path = path});
         if (!std::isfinite(found.distance)) continue;
@@ -102,7 +102,7 @@ TEST(DoubleSignedDistances, are_zero_on_the_surface_and_nowhere_else) {
     const std::vector<ClosestPointD> closest = closest_of(tree, points);
     std::vector<Location> locations;
     for (const Double3& point : points) locations.push_back(exact_location(mesh, point));
-    for (const Path* path : supported_paths())
+    for (const Path* path : paths_with_own_queries())
       for (const InsideRule rule : {InsideRule::parity, InsideRule::vote}) {
         std::vector<double> distances(points.size());
         tree.signed_distances(points, distances, {.rule = rule, .path = path, .threads = 2});

@@ -109,7 +109,7 @@ inline void expect_everywhere(const DoubleMesh& mesh, std::span<const Double3> p
                               double most = infinite) {
   for (const TreeBuilder builder : {TreeBuilder::binned_sah, TreeBuilder::morton, TreeBuilder::median}) {
     const BvhD tree(mesh.vertices, mesh.triangles, {.builder = builder});
-    for (const Path* path : supported_paths()) {
+    for (const Path* path : paths_with_own_queries()) {
       const std::string of_path = name + " on " + path->name;
       for (const int threads : {1, 2})
         expect_same(closest_of(tree, points, {.max_distance = most, .path = path, .threads = threads}),

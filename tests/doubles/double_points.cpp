@@ -125,7 +125,7 @@ TEST(DoubleClosestPoints, of_any_bits) {
         if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) finite.push_back({x, y, z});
       }
   const std::vector<ClosestPointD> first = closest_of(tree, points, {.path = &paths().front()});
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     expect_same(closest_of(tree, points, {.path = path}), first, path->name);
     for (const Double3& point : points)
       ASSERT_TRUE(same_bytes(empty.closest_point(point, {.path = path}), ClosestPointD()));

@@ -55,7 +55,7 @@ const std::vector<Known>& known_cases() {
 
 template <class Check>
 void on_each_case(const Check& check) {
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const Known& known : known_cases()) {
       SCOPED_TRACE(known.with.name + " on " + path->name);
       check(known, *path);
@@ -182,7 +182,7 @@ TEST(DoubleRays, from_a_point_without_an_end_or_a_direction_miss) {
   const std::vector<Double3> corners{{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
   const std::vector<Index3> triangles{{0, 1, 2}};
   const BvhD tree(corners, triangles);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const RayD& ray : odd) {
       std::vector<RayD> rays(100, RayD{{0, 0, 3}, 0, {0, 0, -1}, far});
       for (std::size_t i = 1; i < rays.size(); i += 3) rays[i] = ray;
@@ -319,7 +319,7 @@ TEST(DoubleRays, filters_are_taken_by_every_call) {
   std::vector<RayD> rays(by_level(200));
   for (RayD& ray : rays) ray.origin = point(), ray.direction = point();
   const BvhD tree(vertices, triangles);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     expect_filtered<HitD>(tree, rays, TraceOptionsD{.path = path}, [&](const RayD& ray) {
       return tree.all_hits(std::vector<RayD>{ray}, {.path = &paths().front()}).items;
     });

@@ -65,7 +65,7 @@ void expect_exact_rows(const DoubleMesh& mesh, std::size_t count, std::uint64_t 
   for (const Double3& point : points) exact.push_back(exact_location(mesh, point));
   for (const Location location : {Location::inside, Location::outside})
     EXPECT_GT(std::ranges::count(exact, location), 20);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero}) {
       std::vector<Location> locations(points.size());
       const int threads = rounding == FE_TONEAREST ? 2 : 1;

@@ -43,7 +43,7 @@ inline std::size_t expect_windings(const DoubleMesh& mesh, std::vector<Double3> 
   const BvhD tree(mesh.vertices, mesh.triangles);
   for (const double accuracy : {0.0, 1e-6, 1e-3, 0.1}) {
     std::vector<double> first;
-    for (const Path* path : supported_paths())
+    for (const Path* path : paths_with_own_queries())
       for (const FloatMode mode : float_modes) {
         if (mode == FloatMode::flush && !is_ordinary) continue;
         const FloatModeScope scope(mode);

@@ -76,7 +76,7 @@ TEST(DoubleWindings, closed_meshes_have_whole_numbers) {
     const BvhD tree(mesh.vertices, mesh.triangles);
     std::vector<CrossingCount> counts(points.size());
     tree.count_crossings(rays, counts);
-    for (const Path* path : supported_paths()) {
+    for (const Path* path : paths_with_own_queries()) {
       std::vector<double> numbers(points.size());
       std::vector<Location> by_winding(points.size()), nonzero(points.size());
       tree.winding_numbers(points, numbers, {.path = path});
@@ -96,7 +96,7 @@ TEST(DoubleWindings, the_rules_agree_on_closed_meshes) {
   const BvhD tree(mesh.vertices, mesh.triangles);
   std::vector<Location> parity(points.size()), winding(points.size());
   tree.locate(points, parity);
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     tree.locate(points, winding, {.rule = InsideRule::winding, .path = path, .threads = 2});
     EXPECT_EQ(winding, parity) << path->name;
   }
@@ -132,7 +132,7 @@ TEST(DoubleWindings, sheets_behind_a_point_at_the_least_distances) {
   }
   const std::vector<Double3> points = {{0, 0, 0}, {0.5, -1, 0}, {0, 0, least}, {0, 0, -1024 * least}};
   const BvhD tree(mesh.vertices, mesh.triangles);
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     std::vector<double> numbers(points.size());
     tree.winding_numbers(points, numbers, {.path = path});
     EXPECT_EQ(numbers, (std::vector<double>{0, 0, -1, 1})) << path->name;
@@ -166,7 +166,7 @@ TEST(DoubleWindings, the_rule_of_inside_by_half) {
   std::vector<double> numbers(points.size());
   tree.winding_numbers(points, numbers, {.accuracy = 0});
   EXPECT_GT(std::ranges::count_if(numbers, [](double w) { return w >= 0.5; }), std::ssize(points) / 20);
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     std::vector<Location> locations(points.size());
     tree.locate(points, locations, {.rule = InsideRule::winding, .path = path});
     for (std::size_t i = 0; i < points.size(); ++i)

@@ -157,7 +157,7 @@ void check_mesh(std::uint64_t seed, std::size_t count, const Path& path) {
 TEST(IntegerRays, of_doubles_are_decided_as_integers_decide) {
   const std::size_t count = quick() ? 500 : 10000;
   const std::uint64_t meshes = quick() ? 36 : exhaustive() ? 10000 : 100;
-  const std::vector<const Path*> paths = supported_paths();
+  const std::vector<const Path*> paths = paths_with_own_queries();
   for (std::uint64_t seed = 0; seed < meshes && !HasFatalFailure(); ++seed)
     check_mesh(seed, count, *paths[seed % paths.size()]);
 }

@@ -57,12 +57,12 @@ TEST(PointArrays, distances_in_floats_are_within_the_bound_and_the_same_on_every
     std::vector<Triangle> triangles{at.triangle};
     for (const FloatMode mode : float_modes) {
       Distances of_scalar(1);
-      for (const Path* path : supported_paths()) {
+      for (const Path* path : paths_with_own_queries()) {
         Distances found(1);
         {
           const FloatModeScope scope(mode);
           distances(at.point, TriangleColumns(triangles).arrays(), found.out(), {.path = path});
-          if (path == supported_paths().front())
+          if (path == paths_with_own_queries().front())
             distances(at.point, TriangleColumns(triangles).arrays(), of_scalar.out(), {.path = path});
         }
         for (std::size_t k = 0; k < 6; ++k)
@@ -101,13 +101,13 @@ TEST(PointArrays, closest_points_are_within_the_bound_of_doubles_at_every_scale)
     for (const FloatMode mode : float_modes) {
       if (mode == FloatMode::flush && exponent == -100) continue;  // subnormal coordinates count as zeros
       ClosestPoint of_scalar;
-      for (const Path* path : supported_paths()) {
+      for (const Path* path : paths_with_own_queries()) {
         ClosestPoint found;
         {
           const FloatModeScope scope(mode);
           found = closest_point(at.point, TriangleColumns(triangles).arrays(), {.path = path});
         }
-        if (path == supported_paths().front()) of_scalar = found;
+        if (path == paths_with_own_queries().front()) of_scalar = found;
         EXPECT_TRUE(same_bytes(found, of_scalar)) << path->name;
       }
       const std::string name = std::string(name_of(mode)) + " round " + std::to_string(round);
@@ -132,7 +132,7 @@ TEST(PointArrays, any_length_with_any_mask) {
   const auto inputs = [&](std::size_t n, Place place) {
     return std::make_unique<TriangleColumns>(std::span<const Triangle>(triangles).first(n), place);
   };
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for_all_masks(most, inputs, [&](const auto& in, Place place, LaneBits active) {
       const std::size_t n = in->size();
       Distances found(n, place), untouched(n);
@@ -165,7 +165,7 @@ TEST(PointArrays, any_length_with_any_mask) {
 
 TEST(PointArrays, say_that_nothing_is_close_to_what_is_no_number) {
   const Triangle good = make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const float wrong : {nan, infinity, -infinity}) {
       for (std::size_t k = 0; k < 12; ++k) {
         Triangle triangle = good;
@@ -192,7 +192,7 @@ TEST(PointArrays, keep_to_the_most_distance_and_take_the_least_of_equal_ones) {
   const Triangle floor = make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const std::vector<Triangle> triangles{make_triangle({0, 0, -1}, {1, 0, -1}, {0, 1, -1}), floor, floor};
   const TriangleColumns columns(triangles);
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     const auto primitive = [&](const Float3& point, float most) {
       return closest_point(point, columns.arrays(), {.max_distance = most, .path = path}).primitive;
     };

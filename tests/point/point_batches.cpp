@@ -40,7 +40,7 @@ TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
     GuardedArray<std::uint8_t> active(mask.size(), Place::before_guard);
     active.fill(mask);
     const VertexView points(n == 0 ? nullptr : &records[0].at, n, sizeof(Record));
-    for (const Path* path : supported_paths())
+    for (const Path* path : paths_with_own_queries())
       for (const int threads : {1, 2}) {
         bvh.closest_points(points, {found.data(), n},
                            {.path = path, .threads = threads, .active = active.data()});
@@ -82,7 +82,7 @@ void expect_alone(const Mesh& mesh, std::span<const Float3> points, const std::s
     std::vector<ClosestPoint> found(points.size()), expected;
     for (const Float3& point : points)
       expected.push_back(bvh.closest_point(point, {.max_distance = most, .path = &paths().front()}));
-    for (const Path* path : supported_paths()) {
+    for (const Path* path : paths_with_own_queries()) {
       bvh.closest_points(points, found, {.max_distance = most, .path = path});
       expect_same(found, expected, name + " on " + path->name);
       kd.closest_points(points, found, {.max_distance = most, .path = path});
@@ -133,7 +133,7 @@ TEST_F(CountedClosestPoints, have_the_same_bytes_and_fewer_tests_than_triangles)
   const std::vector<Float3> points = points_for(mesh, 300, random);
   std::vector<ClosestPoint> found(points.size()), expected(points.size());
   const Bvh bvh(mesh);
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const int threads : {1, 2}) {
       TraceCounters counters;
       bvh.closest_points(points, expected, {.path = path});
@@ -154,7 +154,7 @@ TEST_F(CountedClosestPoints, share_nodes_with_neighbours) {
   for (int i = 0; i < 2000; ++i) points.push_back(random.point(0.05f, {1, 0, 0}));
   std::vector<ClosestPoint> found(points.size());
   const Bvh bvh(mesh);
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     TraceCounters together, alone;
     bvh.closest_points(points, found, {.path = path, .counters = &together});
     for (const Float3& point : points) bvh.closest_point(point, {.path = path, .counters = &alone});

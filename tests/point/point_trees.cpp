@@ -24,7 +24,7 @@ void expect_brute_force(const Mesh& mesh, std::span<const Float3> points, float 
         closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
   std::vector<ClosestPoint> found(points.size());
   const auto check = [&](const auto& tree, const std::string& kind) {
-    for (const Path* path : supported_paths())
+    for (const Path* path : paths_with_own_queries())
       for (const int threads : {1, 2}) {
         tree.closest_points(points, found, {.max_distance = most, .path = path, .threads = threads});
         expect_same(found, expected, name + ", " + kind + " on " + path->name);
@@ -147,7 +147,7 @@ TEST(ClosestPointsOfTrees, follow_a_refit) {
     std::vector<Float3> points = points_for(mesh, 200, random);
     for (const Float3& point : clusters(mesh, 40, 45, random)) points.push_back(point);
     const Bvh built(mesh);
-    for (const Path* path : supported_paths()) {
+    for (const Path* path : paths_with_own_queries()) {
       std::vector<ClosestPoint> found(points.size()), expected(points.size());
       bvh.closest_points(points, found, {.path = path});
       built.closest_points(points, expected, {.path = path});
@@ -165,7 +165,7 @@ void expect_calls(const TriangleTree& tree, const Mesh& mesh, std::span<const Fl
     for (const Float3& point : points)
       expected.push_back(
           closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
-    for (const Path* path : supported_paths()) {
+    for (const Path* path : paths_with_own_queries()) {
       force_path(path->name);
       std::vector<ClosestPoint> found;
       for (const Float3& point : points) found.push_back(tree.closest_point(point, {.max_distance = most}));

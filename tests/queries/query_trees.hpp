@@ -22,7 +22,7 @@ template <class Check>
 void each_tree(const Mesh& mesh, const Check& check) {
   const Bvh whole(mesh), split(mesh, {.builder = TreeBuilder::spatial_splits});
   const KdTree cells(mesh), midpoint(mesh, {.builder = KdBuilder::midpoint});
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     const auto of = [&](const char* name, const auto& tree) {
       SCOPED_TRACE(std::string(path->name) + ", " + name);
       check(tree, path);
@@ -34,7 +34,7 @@ void each_tree(const Mesh& mesh, const Check& check) {
 // check(path, threads) on one thread and on three.
 template <class Check>
 void on_each_path(const Check& check) {
-  for (const Path* path : supported_paths())
+  for (const Path* path : paths_with_own_queries())
     for (const int threads : {1, 3}) {
       SCOPED_TRACE(::testing::Message() << path->name << ", " << threads << " threads");
       check(path, threads);

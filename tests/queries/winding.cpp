@@ -198,7 +198,7 @@ TEST(Winding, threads_masks_and_strides) {
   Random random(106);
   std::vector<std::uint8_t> mask(points.size() / 8 + 1);
   for (std::uint8_t& bits : mask) bits = static_cast<std::uint8_t>(random.integer(0, 255));
-  for (const Path* path : supported_paths()) {
+  for (const Path* path : paths_with_own_queries()) {
     const Bvh bvh(mesh);
     std::vector<float> one(points.size()), together(points.size()), some(points.size(), -7.0f);
     bvh.winding_numbers(points, one, {.path = path});

@@ -74,4 +74,17 @@ inline std::vector<const Path*> supported_paths() {
   return usable;
 }
 
+// One of the supported paths for each code of queries, points, winding numbers and doubles, which paths with the same
+// instructions have in common.
+inline std::vector<const Path*> paths_with_own_queries() {
+  std::vector<const Path*> own;
+  for (const Path* path : supported_paths()) {
+    const auto has_its_queries = [&](const Path* other) {
+      return &kernels_of(*other).queries == &kernels_of(*path).queries;
+    };
+    if (std::none_of(own.begin(), own.end(), has_its_queries)) own.push_back(path);
+  }
+  return own;
+}
+
 }  // namespace raylanes::testing

@@ -254,6 +254,7 @@ class Tracer {
     std::vector<std::function<double()>> work;
     for (const Entry& entry : entries)
       work.push_back([&, &contender = entry.contender] {
+        if (options_.warm) contender.trace(question.set, answers);
         return contender.is_packed() ? contender.timed(question.set, answers)
                                      : seconds_of([&] { contender.trace(question.set, answers); });
       });

@@ -56,8 +56,8 @@ RUNS = [
     ("trace hall --size 96x64 --path all --rays primary,shadow,light,diffuse,ao --image hall.png",
      ("hall.png", 96, 64), "same bytes", lambda rows: values(of(rows, rays="primary"), "hits") == {96 * 64}),
     ("trace --size 8x8 --mode single", None, "", lambda rows: values(rows, "scene") == {"spheres", "hall", "fractal"}),
-    ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight", None, "",
-     calls_are_batches),
+    ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight --warm", None,
+     "", lambda rows: calls_are_batches(rows) and values(rows, "warm") == {True}),
     ("trace hall --query all,crossings,count --size 24x16 --against cgal", None, "", lambda rows:
      right(rows, contender="raylanes") and values(rows, "query") == {"all", "crossings", "count"}),
     ("trace hall --doubles --offset 1e6 --size 16x16 --rays primary,ao --against cgal", None, "", lambda rows:
