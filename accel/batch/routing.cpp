@@ -43,6 +43,12 @@ bool may_fly(const TreeView& tree, const TraversalChoice& choice) {
   return tree.rays_wait && choice.may_fly;
 }
 
+// Whether rays that meet little together are too few for streams.
+bool are_few(const TreeView& tree, const TraceBatch& batch) {
+  const StreamSizes from = tree.streams_from;
+  return batch.size < (batch.occluded != nullptr ? from.occluded : from.closest);
+}
+
 // The mode of rays that have a common point, or that neighbours follow.
 TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
                                SharedApex shared, const Float3& point) {
@@ -55,14 +61,14 @@ TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choi
       triangles_of_a_ray<float>(tree, choice.nearest_triangle, {batch.rays, batch.size}, shared, point);
   const PacketsOf kind = only_decides ? PacketsOf::any_hits : PacketsOf::nearest_hits;
   if (may_be_packets && packets_pay(triangles, kind)) return TraversalMode::packet;
+  if (are_few(tree, batch)) return TraversalMode::single;
   return may_fly(tree, choice) && triangles.middle > max_of_neighbours ? TraversalMode::single
                                                                        : TraversalMode::stream;
 }
 
 // The mode of rays that have nothing in common.
 TraversalMode mode_apart(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  const StreamSizes from = tree.streams_from;
-  if (batch.size < (batch.occluded != nullptr ? from.occluded : from.closest)) return TraversalMode::single;
+  if (are_few(tree, batch)) return TraversalMode::single;
   if (choice.nearest_triangle == nullptr) return TraversalMode::stream;
   const TrianglesOfRays triangles = triangles_of_a_ray<float>(
       tree, choice.nearest_triangle, {batch.rays, batch.size}, SharedApex::none, {}, true);

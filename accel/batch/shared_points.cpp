@@ -149,10 +149,14 @@ std::optional<Float3> shared_end_of(std::span<const Ray> rays) {
 
 namespace {
 
-// So many directions are looked at, some of them traced: of few rays at most some. More triangles than that count as
-// that many.
-constexpr std::size_t max_directions = 64, min_traced = 4, max_traced = 32, rays_of_a_traced = 64;
-constexpr double max_of_a_ray = 8;
+// So many directions are looked at, and so many rays traced, fewer in a batch of few rays. These see triangles of one
+// size, so the first ray that sees far fewer or far more than any limit decides for all. Counts above max_of_a_ray are
+// max_of_a_ray.
+constexpr std::size_t max_directions = 64, max_traced = 32, few_rays = 1024;
+constexpr double max_of_a_ray = 8, surely_few = 0.05, surely_many = 16;
+// Fewer rays in a wider solid angle have too little in common for a packet, however large triangles are: measured.
+constexpr std::size_t min_wide_packet = 256;
+constexpr double wide_packet = 0.1;
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 double length_of(const Point& a) {
@@ -258,11 +262,14 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
   double of_a_ray = 0;
   if (has_point) {
     const std::span<Point> some(directions.data(),
-                                std::clamp(rays.size() / 16, max_directions / 4, max_directions));
+                                std::clamp(rays.size() / 32, max_directions / 8, max_directions));
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = seen_from_point(i);
-    of_a_ray = solid_angle_of(some) / static_cast<double>(rays.size());
+    const double all = solid_angle_of(some);
+    if (rays.size() < min_wide_packet && all > wide_packet) return {max_of_a_ray, max_of_a_ray};
+    of_a_ray = all / static_cast<double>(rays.size());
   }
-  const std::size_t traced = std::clamp(rays.size() / rays_of_a_traced, min_traced, max_traced);
+  const std::size_t traced = by_origins ? std::clamp<std::size_t>(rays.size() / 64, 4, max_traced)
+                                        : std::clamp<std::size_t>(rays.size() / 128, 3, max_traced);
   // The share of a ray, if all together went anywhere through the tree.
   const double all = area_of(tree.bounds) / static_cast<double>(std::min(rays.size(), rays_of_streams));
   std::array<double, max_traced> triangles;
@@ -283,6 +290,7 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     double number = share / triangle.solid_angle;
     if (by_origins) number = std::min(number, all / triangle.area);
     if (number >= 0) triangles[seen++] = number;
+    if (!by_origins && rays.size() <= few_rays && (number < surely_few || number > surely_many)) break;
   }
   if (seen == 0)
     return traced < max_traced && !by_origins ? TrianglesOfRays{max_of_a_ray, max_of_a_ray}

@@ -52,7 +52,8 @@ struct TrianglesOfRays {
 // before and after in the batch is the neighbour. by_origins: the direction of neighbours says nothing. The share is
 // then at most that of a ray among those in streams together, were they spread over the tree's bounds. Rays are traced
 // from the point on, however far. If none of them meets a triangle, few rays see many, many rays and those by
-// their origins none. At least three rays. The tree's blocks have corners.
+// their origins none. Few rays that fill a wide solid angle see many, too: they are not worth a packet. At least three
+// rays. The tree's blocks have corners.
 template <class T>
 TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T> nearest,
                                    std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point,
