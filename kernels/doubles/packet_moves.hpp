@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../ray/ray_columns.hpp"
-#include "../traverse/packet/shared_apex.hpp"
+#include "../traverse/packet/frusta.hpp"
 #include "doubles_together.hpp"
 
 namespace raylanes {
@@ -17,12 +17,12 @@ struct DoublePacketBatch : DoublesTogether {
 // origin, or with unusual numbers, no numbers.
 [[gnu::noinline, gnu::flatten]] void move_rays(const DoublePacketBatch& batch, const Float3& origin,
                                                std::size_t first, std::size_t size, Ray* moved) {
-  constexpr int N = group_lanes == 1 ? 1 : group_lanes / 2;
+  constexpr int N = W == 1 ? 1 : W / 2;
   using V = Doubles<N>;
   using Words = Lanes<std::uint64_t, N>;
   constexpr std::uint64_t exponent_bits = 0x7ff0000000000000ull, twice_one = 0x7fe0000000000000ull;
   V column[4][2];
-  for (int half = 0; half < group_lanes / N; ++half) {
+  for (int half = 0; half < W / N; ++half) {
     const void* rows[N];
     for (std::size_t lane = 0; lane < N; ++lane) {
       const std::size_t i = first + static_cast<std::size_t>(half * N) + lane;
@@ -42,19 +42,17 @@ struct DoublePacketBatch : DoublesTogether {
     for (int k = 0; k < 3; ++k) column[k][half] = d[k] * of_direction;
     column[3][half] = select(is_usual, rounded_up_in_frame(end, of_t), V(-1.0));
   }
-  const auto floats = [&](int k) {
-    return floats_of<group_lanes>([&](int half) { return column[k][half]; }, 1);
-  };
-  const GroupFloats columns[row_floats] = {GroupFloats(origin[0]),
-                                           GroupFloats(origin[1]),
-                                           GroupFloats(origin[2]),
-                                           GroupFloats(0.0f),
-                                           floats(0),
-                                           floats(1),
-                                           floats(2),
-                                           floats(3)};
-  void* rows[group_lanes];
-  for (std::size_t lane = 0; lane < group_lanes; ++lane) rows[lane] = moved + first + lane;
+  const auto floats = [&](int k) { return floats_of<W>([&](int half) { return column[k][half]; }, 1); };
+  const Floats<W> columns[row_floats] = {Floats<W>(origin[0]),
+                                         Floats<W>(origin[1]),
+                                         Floats<W>(origin[2]),
+                                         Floats<W>(0.0f),
+                                         floats(0),
+                                         floats(1),
+                                         floats(2),
+                                         floats(3)};
+  void* rows[W];
+  for (std::size_t lane = 0; lane < W; ++lane) rows[lane] = moved + first + lane;
   store_rows(rows, columns);
 }
 

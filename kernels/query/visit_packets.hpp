@@ -2,102 +2,100 @@
 // that its box lets through.
 #pragma once
 
-#include "../traverse/packet/packets.hpp"
+#include "../traverse/packet/packet_leaves.hpp"
 #include "visit.hpp"
 
 namespace raylanes {
 namespace {
 
 // The rays of a packet, for leaves that ask each of them.
-struct alignas(64) VisitRays : RaysInGroups {
-  std::uint32_t in_batch[max_groups][group_lanes];                               // their numbers
-  float inverse_x[max_groups][group_lanes], inverse_y[max_groups][group_lanes];  // 1 / slope
+struct alignas(64) VisitRays : PacketRays {
+  std::uint32_t in_batch[max_vectors][W];                      // their numbers
+  float inverse_x[max_vectors][W], inverse_y[max_vectors][W];  // 1 / slope
 
-  void begin(const VisitBatch& batch, int g) {
-    for (int lane = 0; lane < group_lanes; ++lane) {
-      const std::size_t of_batch = number(g, lane);
-      in_batch[g][lane] = static_cast<std::uint32_t>(of_batch);
-      if (batch.tmax != nullptr && (taken[g] >> lane & 1u) != 0) tmax[g][lane] = first_tmax(batch, of_batch);
+  void begin(const VisitBatch& batch, int row) {
+    for (int lane = 0; lane < W; ++lane) {
+      const std::size_t of_batch = index(row, lane);
+      in_batch[row][lane] = static_cast<std::uint32_t>(of_batch);
+      if (batch.tmax != nullptr && (occupied[row] >> lane & 1u) != 0)
+        tmax[row][lane] = first_tmax(batch, of_batch);
     }
-    inverse(GroupFloats::load(slope_x[g])).store(inverse_x[g]);
-    inverse(GroupFloats::load(slope_y[g])).store(inverse_y[g]);
+    inverse(Floats<W>::load(slope_x[row])).store(inverse_x[row]);
+    inverse(Floats<W>::load(slope_y[row])).store(inverse_y[row]);
   }
-  // The rays of a group that are in a box somewhere; docs/exact.md, part 5.
-  FloatMask<group_lanes> in_box(const FrameBox<GroupFloats>& box, int g) const {
-    using V = GroupFloats;
-    V x = V::load(inverse_x[g]), y = V::load(inverse_y[g]);
+  // The rays of a vector that are in a box somewhere; docs/exact.md, part 5.
+  FloatMask<W> in_box(const FrameBox<Floats<W>>& box, int row) const {
+    V x = V::load(inverse_x[row]), y = V::load(inverse_y[row]);
     V lo_x = box.lo_x * x, hi_x = box.hi_x * x, lo_y = box.lo_y * y, hi_y = box.hi_y * y;
     V entry = max(max(min(lo_x, hi_x), min(lo_y, hi_y)), box.near),
       exit = min(min(max(lo_x, hi_x), max(lo_y, hi_y)),
-                 min(depth_of(V::load(tmax[g]), V::load(size_z[g])), box.far));
-    return (entry <= exit) & FloatMask<group_lanes>::from_bits(going[g]);
+                 min(depth_of(V::load(tmax[row]), V::load(size_z[row])), box.far));
+    return (entry <= exit) & FloatMask<W>::from_bits(active[row]);
   }
 
  private:
   // A slope so small moves nothing by more than the rounding of the others.
-  static GroupFloats inverse(GroupFloats slope) {
-    GroupFloats least(0x1p-30f);
+  static Floats<W> inverse(Floats<W> slope) {
+    Floats<W> least(0x1p-30f);
     auto is_small = abs(slope) < least;
-    return GroupFloats(1.0f) / select(is_small, select(slope < GroupFloats(0.0f), -least, least), slope);
+    return Floats<W>(1.0f) / select(is_small, select(slope < Floats<W>(0.0f), -least, least), slope);
   }
 };
 
-struct WaitingBox : WaitingGroups {
+struct BoxEntry : StackEntry {
+  static constexpr bool leaves_have_corners = false;
   FrameBox<float> box;  // of what it refers to, if that is not the root
 };
 
-// As PacketLeaves.
-class VisitPacketLeaves : public PacketGroups<SharedApex::origin, NoCounters, WaitingBox> {
+class VisitPacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, BoxEntry> {
  public:
   static_assert(sizeof(PacketScratch<VisitRays>) <= packet_bytes<Exact<Grade::reproducible>>(0));
 
   VisitPacketLeaves(const TreeView& tree, const VisitBatch& batch, VisitRays& rays)
-      : PacketGroups(calls_of<VisitPacketLeaves>, tree, batch, rays, nullptr, 0.0f),
+      : PacketWalk(calls_of<VisitPacketLeaves>, tree, batch, rays,
+                   {batch.rays[0].origin, reach(batch.rays[0], tree.bounds)}, batch.size, nullptr, 0.0f),
         batch_(batch),
         rays_(rays) {}
 
-  void begin() {
-    for (int g = 0; g < rays_.groups; ++g) rays_.begin(batch_, g);
+  void trace_single(std::size_t index) {
+    visit_single<NoCounters>(tree_, batch_, static_cast<std::uint32_t>(index), first_tmax(batch_, index));
   }
-  void trace_single(std::size_t number) {
-    visit_single<NoCounters>(tree_, batch_, static_cast<std::uint32_t>(number), first_tmax(batch_, number));
+  void begin() {
+    for (int row = 0; row < rays_.vectors; ++row) rays_.begin(batch_, row);
   }
   void store_results() {}
-  void prefetch_leaf(TreeReference) {}
 
-  [[gnu::noinline, gnu::flatten]] void visit_leaf(const WaitingBox& at) {
-    constexpr int most = max_groups * group_lanes + group_lanes;  // registers are stored whole
-    std::uint32_t numbers[most], left[most], met[max_groups];
-    auto box = broadcast<GroupFloats>(at.box);
+  [[gnu::noinline, gnu::flatten]] void visit_leaf(const BoxEntry& at) {
+    constexpr int most = max_vectors * W + W;  // vectors are stored whole
+    std::uint32_t indices[most], left[most], met[max_vectors];
+    auto box = broadcast<Floats<W>>(at.box);
     std::uint32_t count = 0;
-    for (std::uint32_t groups = at.groups; groups != 0; groups &= groups - 1) {
-      const int g = std::countr_zero(groups);
-      auto rays = rays_.in_box(box, g);
-      met[g] = bits(rays);
-      compress_store(left + count, rays, as<std::uint32_t>(GroupFloats::load(rays_.tmax[g])));
-      count += compress_store(numbers + count, rays, FloatBits<group_lanes>::load(rays_.in_batch[g]));
+    for (std::uint32_t vectors = at.vectors; vectors != 0; vectors &= vectors - 1) {
+      const int row = std::countr_zero(vectors);
+      auto rays = rays_.in_box(box, row);
+      met[row] = bits(rays);
+      compress_store(left + count, rays, as<std::uint32_t>(Floats<W>::load(rays_.tmax[row])));
+      count += compress_store(indices + count, rays, FloatBits<W>::load(rays_.in_batch[row]));
     }
     if (count == 0) return;
     float tmax[most];
     __builtin_memcpy(tmax, left, count * sizeof(float));
-    visit_rays(batch_, at.reference, numbers, tmax, count);
+    visit_rays(batch_, at.reference, indices, tmax, count);
     const float* next = tmax;
-    for (std::uint32_t groups = at.groups; groups != 0; groups &= groups - 1) {
-      const int g = std::countr_zero(groups);
-      if (met[g] == 0) continue;
-      for (std::uint32_t rays = met[g]; rays != 0; rays &= rays - 1)
-        rays_.tmax[g][std::countr_zero(rays)] = *next++;
-      rays_.refresh(g);
+    std::uint32_t visited = 0;
+    for (std::uint32_t vectors = at.vectors; vectors != 0; vectors &= vectors - 1) {
+      const int row = std::countr_zero(vectors);
+      visited |= std::uint32_t{met[row] != 0} << row;
+      for (std::uint32_t rays = met[row]; rays != 0; rays &= rays - 1)
+        rays_.tmax[row][std::countr_zero(rays)] = *next++;
     }
-    all_.far = rays_.farthest();
+    refresh(visited);
   }
-
-  [[gnu::noinline, gnu::flatten]] void trace_alone(const WaitingBox& at) {
-    each_lone(at, [this](const TreeView& below, int g, int lane) { trace_lone(below, g, lane); });
-  }
-  void trace_lone(const TreeView& below, int g, int lane) {
-    float& tmax = rays_.tmax[g][lane];
-    tmax = visit_single<NoCounters>(below, batch_, rays_.in_batch[g][lane], tmax);
+  [[gnu::noinline, gnu::flatten]] void trace_rays(const BoxEntry& at) {
+    each_single(at, [this](const TreeView& below, int row, int lane) {
+      float& tmax = rays_.tmax[row][lane];
+      tmax = visit_single<NoCounters>(below, batch_, rays_.in_batch[row][lane], tmax);
+    });
   }
 
  private:
@@ -109,9 +107,8 @@ class VisitPacketLeaves : public PacketGroups<SharedApex::origin, NoCounters, Wa
 inline void visit_from_origin(const TreeView& tree, const VisitBatch& batch) {
   auto& scratch = *static_cast<PacketScratch<VisitRays>*>(batch.scratch);
   VisitPacketLeaves leaves(tree, batch, scratch.rays);
-  const Ray& first = batch.rays[0];
-  if (!refers_to_leaf(tree.root) && can_be_shared(first.origin, tree.bounds))
-    return Packets(leaves, scratch.order, batch.size, {first.origin, reach(first, tree.bounds)}).trace();
+  if (!refers_to_leaf(tree.root) && can_be_shared(batch.rays[0].origin, tree.bounds))
+    return leaves.trace(scratch.order);
   for (std::size_t i = 0; i < batch.size; ++i) leaves.trace_single(i);
 }
 

@@ -1,4 +1,4 @@
-// The largest and the least lane of a register.
+// The largest and the least lane of a register, and the sum of its lanes.
 #pragma once
 
 #include "vocabulary.hpp"
@@ -26,6 +26,14 @@ inline float largest_lane(Floats<N> a) {
 template <int N>
 inline float min_lane(Floats<N> a) {
   return chosen_lane(a, [](auto p, auto q) { return min(p, q); });
+}
+
+template <int N>
+inline float sum_of_lanes(Floats<N> a) {
+  float x[N], sum = 0.0f;
+  a.store(x);
+  for (const float lane : x) sum += lane;
+  return sum;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 // that those without stay as they are.
 #include "../triangle/all_tests.hpp"
 #include "fused/calls.hpp"
-#include "packet/packets.hpp"
+#include "packet/packet_leaves.hpp"
 #include "single.hpp"
 #include "streams.hpp"
 

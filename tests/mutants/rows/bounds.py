@@ -135,10 +135,10 @@ MUTANTS = [
          'four_floats(0.5f, 1.0f, tmax, 0.0f)'),
         ('fused: numbers without bounds', 'to_four_floats(number - bound)', 'to_four_floats(number + bound)'),
     ]),
-    *rows_of('kernels/traverse/packet/edge_planes.hpp', 'test_exact', rows=[
-        ('packet: no bound of cones', 'V(edge_units * unit)', 'V(0 * unit)'),
+    *rows_of('kernels/traverse/packet/apex_triangles.hpp', 'test_exact', rows=[
+        ('packet: no bound of edge planes', 'V(edge_units * unit)', 'V(0 * unit)'),
     ]),
-    *rows_of('kernels/traverse/packet/shared_apex.hpp', 'test_bvh', rows=[
+    *rows_of('kernels/traverse/packet/frusta.hpp', 'test_bvh', rows=[
         ('packet: boxes not widened', 'padding((frustum_pad + rounding) * reach + 0x1p-90f)', 'padding(0.0f)'),
     ]),
     *rows_of('kernels/traverse/stream_boxes.hpp', 'test_exact', rows=[

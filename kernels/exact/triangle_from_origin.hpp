@@ -1,9 +1,9 @@
-// t, u and v of the hits of a packet. Its rays share an origin, and neighbours a triangle: what a triangle is from
-// there is computed in doubles once, and a ray costs three products of vectors and a division. Hits that this leaves
-// undecided are decided apart.
+// t, u and v of hits of rays that share an origin, and neighbours a triangle: what a triangle is from there is computed
+// in doubles once, and a ray costs three products of vectors and a division.
 #pragma once
 
-#include "nearest_hits.hpp"
+#include "exact_numbers.hpp"
+#include "tree_triangles.hpp"
 
 namespace raylanes {
 namespace {
@@ -52,11 +52,11 @@ struct TriangleFromOrigin {
   }
 };
 
-// Half a register of rays that hit it; size: of their directions.
-template <int half>
-inline auto numbers_from_origin(const TriangleFromOrigin& triangle, const Vec3<GroupFloats>& direction,
-                                GroupFloats size) {
-  using V = HalfInDoubles<half, group_lanes>;
+// For half the lanes of rays that hit it; size: of their directions.
+template <int half, int N>
+inline auto numbers_from_origin(const TriangleFromOrigin& triangle, const Vec3<Floats<N>>& direction,
+                                Floats<N> size) {
+  using V = HalfInDoubles<half, N>;
   Vec3<V> d(to_doubles<half>(direction.x), to_doubles<half>(direction.y), to_doubles<half>(direction.z));
   const auto product = [&](const double(&n)[3]) {
     return multiply_add<Grade::fast>(V(n[2]), d.z, multiply_add<Grade::fast>(V(n[1]), d.y, V(n[0]) * d.x));
@@ -73,7 +73,7 @@ inline auto numbers_from_origin(const TriangleFromOrigin& triangle, const Vec3<G
   return numbers;
 }
 
-// The triangles that neighbours have hit of late.
+// The triangles that neighbouring rays have hit of late.
 class TrianglesFromOrigin {
  public:
   TrianglesFromOrigin(const TreeView& tree, const Float3& origin) : triangles_(tree), origin_(origin) {}
@@ -89,35 +89,6 @@ class TrianglesFromOrigin {
   Float3 origin_;
   TriangleFromOrigin kept_[count];
 };
-
-// For a filtered test: the numbers of a group's hits, and the lanes where they are not clear. Zeros and what is next to
-// them never are.
-template <class Test>
-inline std::uint32_t round_hits(const PacketRays<Test, SharedApex::origin>& rays, int g,
-                                TrianglesFromOrigin& triangles, ColumnsOfHits& hits) {
-  const Vec3<GroupFloats> direction(GroupFloats::load(rays.direction[0][g]),
-                                    GroupFloats::load(rays.direction[1][g]),
-                                    GroupFloats::load(rays.direction[2][g]));
-  const GroupFloats size = GroupFloats::load(rays.size_z[g]);
-  const auto leaf_triangles = FloatBits<group_lanes>::load(rays.leaf_triangle[g]);
-  const auto lanes_of = [&](std::uint32_t leaf_triangle) {
-    return bits(equal_words(leaf_triangles, FloatBits<group_lanes>(leaf_triangle)));
-  };
-  std::uint32_t pending = rays.taken[g] & ~lanes_of(no_leaf_triangle), undecided = 0;
-  while (pending != 0) {
-    const std::uint32_t leaf_triangle = rays.leaf_triangle[g][std::countr_zero(pending)];
-    const std::uint32_t lanes = pending & lanes_of(leaf_triangle);
-    pending &= ~lanes;
-    const TriangleFromOrigin& triangle = triangles[leaf_triangle];
-    const RoundedNumbers<group_lanes> numbers(numbers_from_origin<0>(triangle, direction, size),
-                                              numbers_from_origin<1>(triangle, direction, size));
-    const GroupFloats least = min(min(numbers.t.low, numbers.u.low), numbers.v.low);
-    hits.set(lanes, numbers.t.value, numbers.u.value, numbers.v.value,
-             as<float>(FloatBits<group_lanes>(triangle.primitive)));
-    undecided |= lanes & ~bits(numbers.are_clear() & (least >= GroupFloats(0x1p-100f)));
-  }
-  return undecided;
-}
 
 }  // namespace
 }  // namespace raylanes

@@ -1,6 +1,6 @@
-// The triangles of a leaf by the planes through their edges and the point that the rays of a packet share: in floats,
-// or in doubles for rays of doubles, where frusta still ask in floats. Never wrong where they say that nothing is met:
-// see docs/exact.md, part 5.
+// Triangles as they look from the apex of a packet. By the planes through the apex and their edges frusta drop them and
+// rays decide most hits: in floats, or in doubles for rays of doubles. And the numbers of hits, which neighbours share
+// much of. docs/exact.md, parts 4 and 5, derives the bounds.
 #pragma once
 
 #include <array>
@@ -8,14 +8,31 @@
 
 #include "../../exact/exact_numbers.hpp"
 #include "../../exact/leaf_filter.hpp"
-#include "culls.hpp"
+#include "../../exact/triangle_from_origin.hpp"
+#include "packet_rays.hpp"
 
 namespace raylanes {
 namespace {
 
-// T: of the corners, and of the rays that are tested.
+// Three planes through the apex and an edge each, turned so that rays that hit are on the positive side of all, or less
+// than the bound off. Twice the edge functions of slopes, by normals that are small where triangles are:
+// (b + c) × (c − b).
+template <class T>
+struct PlaneNumbers {
+  T normal[12][tree_width];  // of the planes, and the area as a vector
+  T minus_bound[tree_width];
+  T near[tree_width];  // no corner is before this
+
+  template <class V>
+  V at(int edge, int triangle, V x, V y) const {
+    V z = multiply_add<Grade::fast>(V(normal[edge + 1][triangle]), y, V(normal[edge + 2][triangle]));
+    return multiply_add<Grade::fast>(V(normal[edge][triangle]), x, z);
+  }
+};
+
+// The triangles of a leaf. T: of the corners, and of the rays that are tested; frusta always test in floats.
 template <class Test, class T = float>
-class alignas(64) EdgePlanes : public Cones {
+class alignas(64) EdgePlanes : PlaneNumbers<float> {
   static constexpr bool narrows = !std::is_same_v<T, float>;
   static constexpr int lanes = leaf_lanes<T>;
   using V = Lanes<T, lanes>;
@@ -27,7 +44,6 @@ class alignas(64) EdgePlanes : public Cones {
   // number(k, i): lanes of number k of the triangles' corners, from i on. apex: in the order of the frame.
   template <class Number>
   EdgePlanes(const PacketFrame& frame, const std::array<T, 3>& apex, int triangles, Number number) {
-    in_front = 0;
     for (int i = 0; i < triangles; i += lanes) set(frame, apex, number, i);
     if constexpr (narrows)
       for (int i = 0; i < triangles; i += node_lanes)
@@ -36,6 +52,43 @@ class alignas(64) EdgePlanes : public Cones {
   EdgePlanes(const LeafBlock<Test::floats>& block, const PacketFrame& frame) requires(!narrows)
       : EdgePlanes(frame, frame.apex, tree_width,
                    [&](int k, int i) { return V::load(block.number[k] + i); }) {}
+
+  // The triangles that may meet the rays.
+  std::uint32_t met_by(const Frustum<float>& rays) const {
+    using F = Floats<node_lanes>;
+    std::uint32_t met = 0;
+    for (int i = 0; i < tree_width; i += node_lanes) {
+      F bound = F::load(minus_bound + i);
+      auto inside = F::load(near + i) <= F(rays.far);
+      for (int edge = 0; edge < 9; edge += 3) {
+        F x = F::load(normal[edge] + i), y = F::load(normal[edge + 1] + i);
+        F most = max(x * F(rays.lo_x), x * F(rays.hi_x)) +
+                 (max(y * F(rays.lo_y), y * F(rays.hi_y)) + F::load(normal[edge + 2] + i));
+        inside = inside & (most >= bound);
+      }
+      met |= bits(inside) << i;
+    }
+    return met & in_front_;
+  }
+  // The vectors of rays that may meet one. The end of their slopes that is farthest out is looked up: a branch for each
+  // plane would be predicted wrongly half the time.
+  std::uint32_t vectors_met(int triangle, const PacketRays& rays) const {
+    using F = Floats<W>;
+    const float *x[3], *y[3];
+    for (int edge = 0; edge < 3; ++edge) {
+      x[edge] = rays.range_x[normal[3 * edge][triangle] >= 0.0f];
+      y[edge] = rays.range_y[normal[3 * edge + 1][triangle] >= 0.0f];
+    }
+    F bound(minus_bound[triangle]), first(near[triangle]);
+    std::uint32_t met = 0;
+    for (int row = 0; row < rays.vectors; row += W) {
+      auto inside = first <= F::load(rays.far + row);
+      for (int edge = 0; edge < 3; ++edge)
+        inside = inside & (at(3 * edge, triangle, F::load(x[edge] + row), F::load(y[edge] + row)) >= bound);
+      met |= bits(inside) << row;
+    }
+    return met;
+  }
 
   // The least of the planes' sides that rays are on, and what it is not below where a triangle may be hit.
   template <class R>
@@ -124,8 +177,8 @@ class alignas(64) EdgePlanes : public Cones {
                      largest_magnitude(a.z, b.z, c.z));
     V reach = size(farthest);
     V extent = max(max(size(ab), size(bc)), size(ca)) + V(0x1p-100f);
-    // The volume that origin and triangle span has the sign of what weights of hits add up to. If a triangle's plane is
-    // too near to the origin for that, nothing is known.
+    // The volume that apex and triangle span has the sign of what weights of hits add up to. If a triangle's plane is
+    // too near to the apex for that, nothing is known.
     Vec3<V> area = A::cross(ca, ab), products = products_of(ca, ab);
     V spanned = A::dot(a, area);
     V area_size = extent * extent, edge_size = reach * extent;
@@ -159,7 +212,7 @@ class alignas(64) EdgePlanes : public Cones {
     store_vector(6, A::cross(a + b, ab)), store_vector(9, area);
     V pad(frame.padding);
     (min(min(a.z, b.z), c.z) - pad).store(planes.near + i);
-    in_front |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
+    in_front_ |= bits(max(max(a.z, b.z), c.z) + pad >= V(0.0f)) << i;
   }
   // For frusta, with room for slopes that are rounded to floats: three roundings, and four of the sums. second: where
   // the second half of lanes is, if they have triangles.
@@ -195,13 +248,89 @@ class alignas(64) EdgePlanes : public Cones {
   }
 
   struct Nothing {};
-  struct Wide : PlaneNumbers<T> {
-    T near[tree_width];
-  };
-  [[no_unique_address]] std::conditional_t<narrows, Wide, Nothing> wide_;
+  std::uint32_t in_front_ = 0;  // triangles with a corner that is not behind the apex
+  [[no_unique_address]] std::conditional_t<narrows, PlaneNumbers<T>, Nothing> wide_;
   T volume_[tree_width];
   T min_volume_[tree_width], largest_volume_[tree_width];  // with room for what t may be off
 };
+
+// The hits of a vector of rays, misses at first, with the bits of primitives.
+struct ColumnsOfHits {
+  Floats<W> t{std::numeric_limits<float>::infinity()}, u{0.0f}, v{0.0f};
+  Floats<W> primitive = as<float>(FloatBits<W>(no_primitive));
+
+  void set(std::uint32_t lanes, Floats<W> new_t, Floats<W> new_u, Floats<W> new_v, Floats<W> new_primitive) {
+    const auto taken = FloatMask<W>::from_bits(lanes);
+    t = select(taken, new_t, t), u = select(taken, new_u, u), v = select(taken, new_v, v);
+    primitive = select(taken, new_primitive, primitive);
+  }
+};
+
+// For a filtered test: the numbers of the hits of a vector of rays. Returns the lanes whose numbers are not clear;
+// zeros and their neighbours never are.
+template <class Test>
+inline std::uint32_t round_hits(const RaysAndHits<Test, SharedApex::origin>& rays, int row,
+                                TrianglesFromOrigin& triangles, ColumnsOfHits& hits) {
+  using V = Floats<W>;
+  const Vec3<V> direction(V::load(rays.direction[0][row]), V::load(rays.direction[1][row]),
+                          V::load(rays.direction[2][row]));
+  const V size = V::load(rays.size_z[row]);
+  const auto leaf_triangles = FloatBits<W>::load(rays.leaf_triangle[row]);
+  const auto lanes_of = [&](std::uint32_t leaf_triangle) {
+    return bits(equal_words(leaf_triangles, FloatBits<W>(leaf_triangle)));
+  };
+  std::uint32_t pending = rays.occupied[row] & ~lanes_of(no_leaf_triangle), undecided = 0;
+  while (pending != 0) {
+    const std::uint32_t leaf_triangle = rays.leaf_triangle[row][std::countr_zero(pending)];
+    const std::uint32_t lanes = pending & lanes_of(leaf_triangle);
+    pending &= ~lanes;
+    const TriangleFromOrigin& triangle = triangles[leaf_triangle];
+    const RoundedNumbers<W> numbers(numbers_from_origin<0>(triangle, direction, size),
+                                    numbers_from_origin<1>(triangle, direction, size));
+    const V least = min(min(numbers.t.low, numbers.u.low), numbers.v.low);
+    hits.set(lanes, numbers.t.value, numbers.u.value, numbers.v.value,
+             as<float>(FloatBits<W>(triangle.primitive)));
+    undecided |= lanes & ~bits(numbers.are_clear() & (least >= V(0x1p-100f)));
+  }
+  return undecided;
+}
+
+// Stores the hits of a vector of rays, each as a row, into the batch.
+template <int N = W>
+inline void store_hits(Hit* all, const PacketRays& rays, int row, const ColumnsOfHits& hits) {
+  const Floats<N> columns[] = {hits.t, hits.u, hits.v, hits.primitive};
+  if constexpr (N >= 4)
+    if (rays.runs.of_four && rays.occupied[row] == first_lanes<N>(N)) [[likely]] {
+      void* places[N / 4];
+      for (int k = 0; k < N / 4; ++k) places[k] = all + rays.first_run[row][k];
+      return store_strips(places, columns);
+    }
+  Hit of_no_ray;
+  void* places[N];
+  for (int lane = 0; lane < N; ++lane)
+    places[lane] = (rays.occupied[row] >> lane & 1u) != 0 ? all + rays.index(row, lane) : &of_no_ray;
+  store_rows(places, columns);
+}
+// Stores which rays are occluded: those that no longer are active.
+inline void store_decisions(std::uint8_t* all, const PacketRays& rays, int row) {
+  const std::uint32_t hit = ~rays.active[row];
+  if (W >= 4 && rays.runs.of_four && rays.occupied[row] == first_lanes<W>(W)) {
+    for (int k = 0; k < W / 4; ++k) {
+      // A byte each of four bits.
+      std::uint32_t bytes = 0;
+      for (int lane = 0; lane < W; ++lane)
+        if (strip_of_lane<W>(lane) == k) bytes |= (hit >> lane & 1u) << 8 * row_in_strip<W>(lane);
+      __builtin_memcpy(all + rays.first_run[row][k], &bytes, sizeof bytes);
+    }
+    return;
+  }
+  for (std::uint32_t lanes = rays.occupied[row]; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    all[rays.index(row, lane)] = static_cast<std::uint8_t>(hit >> lane & 1u);
+  }
+}
+static_assert(sizeof(Hit) == 4 * sizeof(float) && offsetof(Hit, t) == 0 &&
+              offsetof(Hit, primitive) == 3 * sizeof(float));
 
 }  // namespace
 }  // namespace raylanes
