@@ -62,7 +62,25 @@ struct SegmentToHit : Segment<V> {
   V accept_below() const { return t_lo; }
 };
 
-// The same where most registers hold nothing that the ray passes through, as in the leaves of a tree: those
+// The state of a vector of rays under a filtered test. Any hit ends a ray: then the state is the segment. For the
+// nearest hit it has the candidate of each ray, too. Streams and packets load a state, each from memory of its own,
+// test triangles, and store it.
+template <class V, bool only_decides>
+struct RayState : Segment<V, true> {};
+
+template <class V>
+struct RayState<V, false> : SegmentToHit<V> {
+  V leaf_triangle;  // the candidates', as bits
+
+  // Replaces the candidates of some lanes.
+  void keep(MaskOf<V> lanes, V new_t_lo, V t_hi, V new_leaf_triangle) {
+    this->t_lo = select(lanes, new_t_lo, this->t_lo);
+    this->tmax = select(lanes, t_hi, this->tmax);
+    leaf_triangle = select(lanes, new_leaf_triangle, leaf_triangle);
+  }
+};
+
+// A segment where most vectors hold nothing that the ray passes through, as in the leaves of a tree: those
 // cost no division.
 template <class V>
 struct LeafSegment : Segment<V> {

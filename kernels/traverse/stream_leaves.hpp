@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../exact/leaf_filter.hpp"
-#include "../ray/ray_state.hpp"
+#include "../ray/ranges.hpp"
 #include "single.hpp"
 #include "stream_hits.hpp"
 

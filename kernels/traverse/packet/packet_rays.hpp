@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "../../ray/ray_state.hpp"
+#include "../../ray/ranges.hpp"
 #include "../single.hpp"
 #include "tiles.hpp"
 
