@@ -76,8 +76,4 @@ std::vector<CornersOf<double>> triangles_of(const BvhDArrays& tree);
 // As refit_tree().
 void refit_bvh_d(BvhDArrays& tree, const VertexViewD& vertices, const IndexView& triangles, int threads);
 
-// BvhD::locate() by InsideRule::winding; the views are checked, `box` is around the tree.
-void locate_by_winding(const std::unique_ptr<BvhDArrays>& tree, const BoxD& box, VertexViewD points,
-                       std::span<Location> locations, const LocateOptions& options);
-
 }  // namespace raylanes

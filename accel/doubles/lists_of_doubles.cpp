@@ -1,9 +1,16 @@
-// All hits, crossings, inside and outside of trees of doubles.
+// All hits and crossings of trees of doubles, inside and outside, and winding numbers.
 #include "../queries/crossings.hpp"
 #include "../queries/locations.hpp"
 #include "bvh_d_arrays.hpp"
 
 namespace raylanes {
+namespace {
+
+Surface<double> surface_of(const std::unique_ptr<BvhDArrays>& tree) {
+  return {view_of(tree), false, tree ? &tree->boundary : nullptr, [&tree] { return triangles_of(*tree); }};
+}
+
+}  // namespace
 
 RayLists<HitD> BvhD::all_hits(RayViewD rays, const ListOptions& options) const {
   return hits_of<double>(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip},
@@ -34,10 +41,11 @@ void BvhD::count_crossings(const RayArraysD& rays, std::span<CrossingCount> coun
 }
 
 void BvhD::locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options) const {
-  require_locations(points, locations, options);
-  if (options.rule == InsideRule::winding)
-    return locate_by_winding(tree_, bounds(), points, locations, options);
-  locate_by_crossings<double>(view_of(tree_), bounds(), points, locations, options);
+  locate_points(surface_of(tree_), points, locations, options);
+}
+void BvhD::winding_numbers(VertexViewD points, std::span<double> numbers,
+                           const WindingOptions& options) const {
+  find_winding_numbers(surface_of(tree_), points, numbers, options);
 }
 
 }  // namespace raylanes

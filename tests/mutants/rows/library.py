@@ -56,10 +56,10 @@ MUTANTS = [
         ('points: pieces begin within bytes of masks', '+ of_mask - points.count / threads % of_mask', '+ 1'),
         ('points: parts beyond their piece', 'count = std::min(piece - within, end - begin);', 'count = end - begin;'),
     ]),
-    *rows_of('accel/queries/lines_of_points.hpp', 'test_doubles', source='accel/doubles/lists_of_doubles.cpp', rows=[
+    *rows_of('accel/queries/point_places.cpp', 'test_doubles', rows=[
         ('doubles: t of rows without an error', 'of_t = 0x1p-51', 'of_t = 0.0'),
     ]),
-    *rows_of('accel/queries/lines_of_points.hpp', 'test_queries', source='accel/queries/locate.cpp', rows=[
+    *rows_of('accel/queries/point_places.cpp', 'test_queries', rows=[
         ('lines: points at crossings too', 'of_t = 0x1p-22', 'of_t = 0.0'),
     ]),
     *rows_of('accel/scene/bounded_tree_arrays.cpp', 'test_scenes', rows=[
