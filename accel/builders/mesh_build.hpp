@@ -1,15 +1,12 @@
 // The first and the last steps of a build over triangles, for any tree.
 #pragma once
 
-#include <string>
-
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/checked.hpp"
-#include "../layout/binary_tree.hpp"
-#include "../mesh/valid_mesh.hpp"
+#include "../layout/bvh_arrays.hpp"
+#include "builder_table.hpp"
 #include "mesh_references.hpp"
-#include "sah/triangle_clipper.hpp"
 
 namespace raylanes {
 
@@ -31,29 +28,29 @@ struct BuildMeters {
   }
 };
 
-// With the boxes of the triangles, which it makes in the first phase. Throws as validate_mesh.
-struct MeshBuild : BuildMeters {
-  TriangleClipper clipper;
-  Array<Reference> references;
-
-  MeshBuild(VertexView vertices, IndexView triangles, const Progress& reports_to, int threads,
-            double end_of_boxes)
-      : BuildMeters(reports_to, threads, end_of_boxes), clipper(vertices, triangles) {
-    require_valid_mesh(vertices, triangles, threads);
-    references = references_of(vertices, triangles, run, end_of_boxes);
-  }
-};
-
 // The shares of a build's time at whose ends a bounding volume hierarchy has boxes, and nodes with leaves, about.
 inline constexpr double end_of_bvh_boxes = 0.1, end_of_bvh_layout = 0.999;
 
-// Puts the builder and `optimize` that suit the mesh into the options, by which a refit that has to build goes, too;
-// returns why. `waste` is box_waste().
-std::string take_choice(const Array<Reference>& references, double waste, BuildOptions& options);
-// The tree over boxes as the options ask for, in phases of its own; begins the phase of the layout. The clipper is for
-// builders that split. The report gets what the boxes and the tree took.
-BinaryTree binary_tree_of(Array<Reference> references, const TriangleClipper* clipper,
-                          const BuildOptions& options, BuildMeters& build, TreeReport& report);
+// The build of a bounding volume hierarchy but for its boxes and leaves, which depend on the kind of numbers.
+class BvhBuild : public BuildMeters {
+ public:
+  BvhBuild(const BuildOptions& options, std::size_t triangles, int threads)
+      : BuildMeters(options.progress, threads, end_of_bvh_boxes), options_(options), triangles_(triangles) {}
+
+  // Whether the builder is chosen by what references waste, as box_waste() says.
+  bool chooses() const { return options_.choose; }
+  // The tree over boxes as the options ask for, in phases of its own; begins the phase of the layout. The clipper is
+  // for builders that split.
+  BinaryTree binary_tree(Array<Reference> references, double waste, const Clipper* clipper);
+  // The tree has its leaves: what it keeps of its build. A refit that has to build goes by the choice, too.
+  void finish(NodesOfMesh& tree);
+
+ private:
+  BuildOptions options_;
+  std::size_t triangles_;
+  std::vector<std::uint32_t> left_out_;
+  TreeReport report_;
+};
 
 // Checks what the options of all trees have in common, then calls build(threads) where its threads are. The prefix of
 // messages is the tree's name.

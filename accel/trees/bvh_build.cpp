@@ -1,27 +1,21 @@
-#include "../builders/builder_table.hpp"
 #include "../builders/choice.hpp"
 #include "../builders/mesh_build.hpp"
-#include "../layout/bvh_arrays.hpp"
-#include "../layout/cost.hpp"
+#include "../builders/sah/triangle_clipper.hpp"
+#include "../mesh/valid_mesh.hpp"
 
 namespace raylanes {
 namespace {
 
-BvhArrays build_on(VertexView vertices, IndexView triangles, BuildOptions options, int threads) {
-  MeshBuild build(vertices, triangles, options.progress, threads, end_of_bvh_boxes);
-  TreeReport report;
-  std::vector<std::uint32_t> left_out = left_out_of(triangles.count, build.references);
-  build.memory.hold(left_out.size() * sizeof(std::uint32_t));
-  if (options.choose)
-    report.choice = take_choice(build.references, box_waste(build.references, vertices, triangles), options);
-  BinaryTree binary = binary_tree_of(std::move(build.references), &build.clipper, options, build, report);
+BvhArrays build_on(const VertexView& vertices, const IndexView& triangles, const BuildOptions& options,
+                   int threads) {
+  BvhBuild build(options, triangles.count, threads);
+  require_valid_mesh(vertices, triangles, threads);
+  const TriangleClipper clipper(vertices, triangles);
+  Array<Reference> references = references_of(vertices, triangles, build.run, end_of_bvh_boxes);
+  const double waste = build.chooses() ? box_waste(references, vertices, triangles) : 1.0;
+  BinaryTree binary = build.binary_tree(std::move(references), waste, &clipper);
   BvhArrays tree = collapse_to_bvh(std::move(binary), {vertices, triangles}, build.run);
-  report.layout_seconds = build.watch.lap();
-  report.peak_bytes = build.memory.peak();
-  tree.left_out = std::move(left_out);
-  tree.built_cost = sah_cost(tree);
-  tree.set_build(options, triangles.count, std::move(report));
-  build.finish();
+  build.finish(tree);
   return tree;
 }
 

@@ -3,10 +3,8 @@
 #include <cstring>
 
 #include "../../dispatch/bits.hpp"
-#include "../builders/builder_table.hpp"
 #include "../builders/mesh_build.hpp"
 #include "../doubles/bvh_d_arrays.hpp"
-#include "../layout/cost.hpp"
 #include "../layout/refit.hpp"
 #include "../mesh/valid_mesh.hpp"
 
@@ -113,30 +111,22 @@ void make_leaves(BvhDArrays& tree, const Array<LeafRange>& ranges, std::span<con
   });
 }
 
-BvhDArrays build_on(const VertexViewD& vertices, const IndexView& triangles, BuildOptions options,
+BvhDArrays build_on(const VertexViewD& vertices, const IndexView& triangles, const BuildOptions& options,
                     int threads) {
-  BuildMeters build(options.progress, threads, end_of_bvh_boxes);
+  BvhBuild build(options, triangles.count, threads);
   require_valid_mesh(vertices, triangles, threads);
   BvhDArrays tree;
-  TreeReport report;
   tree.mesh_bounds = bounds_of(vertices, triangles, threads);
   tree.frame = frame_of(tree.mesh_bounds);
   Array<Reference> references = references_of(
       vertices, triangles, build.run, end_of_bvh_boxes,
       [&](const Double3& a, const Double3& b, const Double3& c) { return box_in(tree.frame, a, b, c); });
-  tree.left_out = left_out_of(triangles.count, references);
-  build.memory.hold(tree.left_out.size() * sizeof(std::uint32_t));
   constexpr double no_waste = 1.0;  // waste speaks for splits alone, which trees of doubles do not have
-  if (options.choose) report.choice = take_choice(references, no_waste, options);
-  BinaryTree binary = binary_tree_of(std::move(references), nullptr, options, build, report);
+  BinaryTree binary = build.binary_tree(std::move(references), no_waste, nullptr);
   NodesOverRanges nodes = collapse_nodes(binary, build.run);
   tree.nodes = std::move(nodes.nodes), tree.root = nodes.root, tree.bounds = nodes.bounds;
   make_leaves(tree, nodes.leaves, binary.order, vertices, triangles, build.run);
-  report.layout_seconds = build.watch.lap();
-  report.peak_bytes = build.memory.peak();
-  tree.built_cost = sah_cost(tree);
-  tree.set_build(options, triangles.count, std::move(report));
-  build.finish();
+  build.finish(tree);
   return tree;
 }
 

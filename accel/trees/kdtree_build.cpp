@@ -2,7 +2,9 @@
 
 #include "../builders/kd/kd_builders.hpp"
 #include "../builders/mesh_build.hpp"
+#include "../builders/sah/triangle_clipper.hpp"
 #include "../layout/kdtree_arrays.hpp"
+#include "../mesh/valid_mesh.hpp"
 
 namespace raylanes {
 namespace {
@@ -27,16 +29,18 @@ std::vector<LeafRange> ranges_of(KdCells& cells) {
 
 KdTreeArrays build_on(VertexView vertices, IndexView triangles, const KdBuildOptions& options,
                       KdBuild build_nodes, int threads) {
-  MeshBuild build(vertices, triangles, options.progress, threads, end_of_boxes);
+  BuildMeters build(options.progress, threads, end_of_boxes);
+  require_valid_mesh(vertices, triangles, threads);
+  const TriangleClipper clipper(vertices, triangles);
+  Array<Reference> references = references_of(vertices, triangles, build.run, end_of_boxes);
   KdTreeArrays tree;
-  tree.build_report.triangles = build.references.size();
+  tree.build_report.triangles = references.size();
   tree.build_report.boxes_seconds = build.watch.lap();
   build.progress.begin_phase(end_of_cells);
   KdCells cells;
-  if (build.references.size() > 0) {
-    for (std::size_t i = 0; i < build.references.size(); ++i)
-      extend(tree.bounds, plain_box(build.references[i].box));
-    cells = build_nodes({std::move(build.references), &build.clipper, build.run});
+  if (references.size() > 0) {
+    for (std::size_t i = 0; i < references.size(); ++i) extend(tree.bounds, plain_box(references[i].box));
+    cells = build_nodes({std::move(references), &clipper, build.run});
   }
   tree.build_report.tree_seconds = build.watch.lap();
   build.progress.finish_phase();
