@@ -15,21 +15,12 @@ void require_exact(const TraceOptions& options) {
 
 namespace {
 
-void filter_tree_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
-                      const HitFilter& filter, const TraceOptions& options) {
-  require_exact(options);
-  trace_hits(tree, rays, hits, options);
-  filter_hits<float>(rays, hits, filter, options,
-                     [&](const std::vector<Ray>& some, std::vector<Hit>& last, const TraceOptions& again) {
-                       trace_next(tree, {.records = some, .skip = again.skip}, last, again);
-                     });
-}
-void filter_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
-                     std::span<std::uint8_t> occluded, const HitFilter& filter, const TraceOptions& options) {
-  occluded_by_filter<Hit>("trace", rays, what, occluded, options,
-                          [&](const HitView& hits, const TraceOptions& from_the_first) {
-                            filter_tree_hits(tree, rays, hits, filter, from_the_first);
-                          });
+auto filtered(const TracedTree& tree, const HitFilter& filter, const TraceOptions& options) {
+  const auto trace = [tree](const RaySource& rays, const HitView& hits, const TraceOptions& by) {
+    require_exact(by);
+    trace_hits(tree, rays, hits, by);
+  };
+  return FilteredCall<float, HitFilter, TraceOptions, decltype(trace)>{"trace", filter, options, trace};
 }
 
 }  // namespace
@@ -51,31 +42,24 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
 
 void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                                     const TraceOptions& options) const {
-  filter_tree_hits(traced(), {.records = rays, .active = options.active, .skip = options.skip}, hits, filter,
-                   options);
+  filtered(traced(), filter, options).closest(rays, hits);
 }
 void TriangleTree::filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
                                     const TraceOptions& options) const {
-  filter_tree_hits(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, filter,
-                   options);
+  filtered(traced(), filter, options).closest(rays, hits);
 }
 void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                                      const TraceOptions& options) const {
-  filter_occluded(traced(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(traced(), filter, options).occluded(rays, occluded);
 }
 void TriangleTree::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                                      const HitFilter& filter, const TraceOptions& options) const {
-  filter_occluded(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(traced(), filter, options).occluded(rays, occluded);
 }
 void TriangleTree::filtered_occluded_from(const Float3& from, VertexView points,
                                           std::span<std::uint8_t> occluded, const HitFilter& filter,
                                           const SegmentEnds& ends, const TraceOptions& options) const {
-  require_points("trace", points);
-  const Segments segments{from, points, ends};
-  filter_occluded(traced(), {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                  occluded, filter, options);
+  filtered(traced(), filter, options).occluded_from(from, points, occluded, ends);
 }
 
 }  // namespace raylanes

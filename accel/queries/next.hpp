@@ -47,4 +47,52 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, c
       may_turn_down);
 }
 
+// Calls with a filter, for all trees: trace(rays, hits, options) is their call without one, and finds what is behind
+// options.after. `call` begins messages.
+template <class T, class Filter, class Options, class Trace>
+struct FilteredCall {
+  const char* call;
+  const Filter& filter;
+  const Options& options;
+  Trace trace;
+
+  // RayRecords or RayArraysOf<T>.
+  template <class Rays>
+  void closest(const Rays& rays, const HitRecords<HitOf<T>>& hits) const {
+    find(source_of(rays), hits, options);
+  }
+  template <class Rays>
+  void occluded(const Rays& rays, std::span<std::uint8_t> occluded) const {
+    find_occluded(source_of(rays), "rays", occluded);
+  }
+  void occluded_from(const PointOf<T>& from, const VertexRecords<T>& points, std::span<std::uint8_t> occluded,
+                     const SegmentEndsOf<T>& ends) const {
+    require_points(call, points);
+    const SegmentsOf<T> segments{from, points, ends};
+    find_occluded({.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                  occluded);
+  }
+
+ private:
+  RaySourceOf<T> source_of(const RayRecords<RayOf<T>>& rays) const {
+    return {.records = rays, .active = options.active, .skip = options.skip};
+  }
+  RaySourceOf<T> source_of(const RayArraysOf<T>& rays) const {
+    return {.arrays = &rays, .active = options.active, .skip = options.skip};
+  }
+  void find(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, const Options& by) const {
+    trace(rays, hits, by);
+    filter_hits<T>(rays, hits, filter, by,
+                   [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last, const Options& again) {
+                     trace({.records = some, .skip = again.skip}, last, again);
+                   });
+  }
+  void find_occluded(const RaySourceOf<T>& rays, const char* what, std::span<std::uint8_t> occluded) const {
+    occluded_by_filter<HitOf<T>>(call, rays, what, occluded, options,
+                                 [&](const HitRecords<HitOf<T>>& hits, const Options& from_the_first) {
+                                   find(rays, hits, from_the_first);
+                                 });
+  }
+};
+
 }  // namespace raylanes

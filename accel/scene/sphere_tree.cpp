@@ -115,20 +115,11 @@ void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, const c
                  });
 }
 
-void filter_sphere_hits(const SphereTreeArrays* tree, const RaySource& rays, const HitView& hits,
-                        const HitFilter& filter, const VisitOptions& options) {
-  trace_hits(tree, rays, hits, options);
-  filter_hits<float>(rays, hits, filter, options,
-                     [&](const std::vector<Ray>& some, std::vector<Hit>& last, const VisitOptions& again) {
-                       trace_hits(tree, {.records = some, .skip = again.skip}, last, again);
-                     });
-}
-void filter_occluded(const SphereTreeArrays* tree, const RaySource& rays, const char* what,
-                     std::span<std::uint8_t> occluded, const HitFilter& filter, const VisitOptions& options) {
-  occluded_by_filter<Hit>("sphere tree", rays, what, occluded, options,
-                          [&](const HitView& hits, const VisitOptions& from_the_first) {
-                            filter_sphere_hits(tree, rays, hits, filter, from_the_first);
-                          });
+auto filtered(const SphereTreeArrays* tree, const HitFilter& filter, const VisitOptions& options) {
+  const auto trace = [tree](const RaySource& rays, const HitView& hits, const VisitOptions& by) {
+    trace_hits(tree, rays, hits, by);
+  };
+  return FilteredCall<float, HitFilter, VisitOptions, decltype(trace)>{"sphere tree", filter, options, trace};
 }
 
 struct SphereGeometry : Geometry {
@@ -225,31 +216,24 @@ void SphereTree::occluded_from(const Float3& from, VertexView points, std::span<
 
 void SphereTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                                   const VisitOptions& options) const {
-  filter_sphere_hits(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, hits,
-                     filter, options);
+  filtered(tree_.get(), filter, options).closest(rays, hits);
 }
 void SphereTree::filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
                                   const VisitOptions& options) const {
-  filter_sphere_hits(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
-                     filter, options);
+  filtered(tree_.get(), filter, options).closest(rays, hits);
 }
 void SphereTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
                                    const VisitOptions& options) const {
-  filter_occluded(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(tree_.get(), filter, options).occluded(rays, occluded);
 }
 void SphereTree::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                                    const HitFilter& filter, const VisitOptions& options) const {
-  filter_occluded(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(tree_.get(), filter, options).occluded(rays, occluded);
 }
 void SphereTree::filtered_occluded_from(const Float3& from, VertexView points,
                                         std::span<std::uint8_t> occluded, const HitFilter& filter,
                                         const SegmentEnds& ends, const VisitOptions& options) const {
-  require_points("sphere tree", points);
-  const Segments segments{from, points, ends};
-  filter_occluded(tree_.get(), {.segments = &segments, .active = options.active, .skip = options.skip},
-                  "points", occluded, filter, options);
+  filtered(tree_.get(), filter, options).occluded_from(from, points, occluded, ends);
 }
 
 Box SphereTree::bounds() const noexcept {

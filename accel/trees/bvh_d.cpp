@@ -31,22 +31,11 @@ bool must_build(const BvhDArrays* tree, const VertexViewD& vertices, const Index
   require_size("refit", "triangles", triangles.count, "tree", tree != nullptr ? tree->mesh_triangles : 0);
   return tree != nullptr && comes_back(tree->left_out, vertices, triangles);
 }
-void filter_double_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
-                        const HitFilterD& filter, const TraceOptionsD& options) {
-  trace_hits(tree, rays, hits, options);
-  filter_hits<double>(
-      rays, hits, filter, options,
-      [&](const std::vector<RayD>& some, std::vector<HitD>& last, const TraceOptionsD& again) {
-        trace_hits(tree, {.records = some, .skip = again.skip}, last, again);
-      });
-}
-void filter_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
-                     std::span<std::uint8_t> occluded, const HitFilterD& filter,
-                     const TraceOptionsD& options) {
-  occluded_by_filter<HitD>("trace", rays, what, occluded, options,
-                           [&](const HitViewD& hits, const TraceOptionsD& from_the_first) {
-                             filter_double_hits(tree, rays, hits, filter, from_the_first);
-                           });
+auto filtered(const DoubleTreeView& tree, const HitFilterD& filter, const TraceOptionsD& options) {
+  const auto trace = [tree](const RaySourceOf<double>& rays, const HitViewD& hits, const TraceOptionsD& by) {
+    trace_hits(tree, rays, hits, by);
+  };
+  return FilteredCall<double, HitFilterD, TraceOptionsD, decltype(trace)>{"trace", filter, options, trace};
 }
 
 BuildOptions build_again(const BvhDArrays& tree, int threads) {
@@ -170,31 +159,24 @@ void BvhD::closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOp
 
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
-  filter_double_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits,
-                     filter, options);
+  filtered(view_of(tree_), filter, options).closest(rays, hits);
 }
 void BvhD::filtered_closest(const RayArraysD& rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
-  filter_double_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
-                     filter, options);
+  filtered(view_of(tree_), filter, options).closest(rays, hits);
 }
 void BvhD::filtered_occluded(RayViewD rays, std::span<std::uint8_t> occluded, const HitFilterD& filter,
                              const TraceOptionsD& options) const {
-  filter_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(view_of(tree_), filter, options).occluded(rays, occluded);
 }
 void BvhD::filtered_occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
                              const HitFilterD& filter, const TraceOptionsD& options) const {
-  filter_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                  occluded, filter, options);
+  filtered(view_of(tree_), filter, options).occluded(rays, occluded);
 }
 void BvhD::filtered_occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                                   const HitFilterD& filter, const SegmentEndsD& ends,
                                   const TraceOptionsD& options) const {
-  require_points("trace", points);
-  const SegmentsOf<double> segments{from, points, ends};
-  filter_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip},
-                  "points", occluded, filter, options);
+  filtered(view_of(tree_), filter, options).occluded_from(from, points, occluded, ends);
 }
 
 void BvhD::each_triangle(const TriangleVisitorD& visit) const {
