@@ -3,6 +3,8 @@
 #pragma once
 
 #include <atomic>
+#include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <iterator>
 #include <stdexcept>
@@ -39,6 +41,14 @@ inline const Path& path_in_use() {
   throw std::invalid_argument(std::string(function) + ": " + array + " has " + std::to_string(size) +
                               " elements, " + as + " has " + std::to_string(wanted) +
                               "; they must have the same number");
+}
+
+// A number in a message, as the shortest text that reads back as the same number: "1e-09", "0.1", "nan".
+// std::to_string() rounds to six decimals, so that -1e-9 looks like a zero.
+template <std::floating_point T>
+std::string text_of(T number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
 // The number of an enumerator, which may have been cast from anything, if it is below `count`.

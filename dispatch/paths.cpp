@@ -7,8 +7,10 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/version.hpp>
 
 #include "checked.hpp"
 #include "table/kernel_table.hpp"
@@ -198,6 +200,23 @@ void force_path(std::string_view name) {
 
 void unforce_path() noexcept {
   detail::path_in_use.store(nullptr, std::memory_order_release);
+}
+
+namespace {
+
+#define RAYLANES_TEXT_OF(x) #x
+#define RAYLANES_TEXT(x) RAYLANES_TEXT_OF(x)
+constexpr std::string_view parts = RAYLANES_TEXT(RAYLANES_VERSION_MAJOR) "." RAYLANES_TEXT(
+    RAYLANES_VERSION_MINOR) "." RAYLANES_TEXT(RAYLANES_VERSION_PATCH);
+constexpr std::string_view version_text = RAYLANES_VERSION;
+static_assert(version_text.substr(0, version_text.find('-')) == parts);
+static_assert(version_text == RAYLANES_PROJECT_VERSION,
+              "version.hpp and meson.build name different versions");
+
+}  // namespace
+
+const char* version() noexcept {
+  return RAYLANES_VERSION;
 }
 
 }  // namespace raylanes

@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-#include "large_memory.hpp"
+#include "array.hpp"
 
 namespace raylanes {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <new>
 
-#include "large_memory.hpp"
+#include "array.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,8 +1,13 @@
-// Keys of places in space, and sorting by Highway's VQSort or, with -Dsort=std, by the C++ library.
+// Keys of places in space, sorted by Highway's VQSort or, with -Dsort=std, by the C++ library; and points in an order
+// in which neighbours come one after the other: along a curve through the cells of a grid (Morton 1966).
 #pragma once
 
 #include <cstdint>
 #include <span>
+
+#include <raylanes/mesh.hpp>
+
+#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 
@@ -16,5 +21,12 @@ inline std::uint64_t spread_bits(std::uint64_t x) {
 
 // Sorts keys in ascending order. Trees have the same bytes by either sort, because all keys of a call differ.
 void sort_keys(std::span<std::uint64_t> keys);
+
+// Orders order.size() points, less than 2^32, from `begin` on: the lower half of order[k] says which one comes k-th.
+// Coordinates may have any bits; points outside twice the box count as on its faces. Inactive points are not read, and
+// come last.
+template <class T>
+void order_points(const VertexRecords<T>& points, std::size_t begin, const BoxOf<T>& box, LaneBits active,
+                  std::span<std::uint64_t> order);
 
 }  // namespace raylanes

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raylanes/builders.hpp>
+#include <raylanes/mesh.hpp>
 
 #include "../batch/array.hpp"
 #include "../batch/meters.hpp"
@@ -20,6 +21,20 @@ class Clipper {
     Box4 below, above;
   };
   virtual Halves cut(std::uint32_t primitive, const Box4& box, std::size_t axis, float at) const = 0;
+};
+
+// The box of a half of a triangle is that of the corners on its side and of the points where edges cross the plane
+// (Stich, Friedrich, Dietrich 2009). These points are computed in double and pushed outwards by more than their error,
+// so that every point of the triangle is in one of the two boxes; also where subnormal numbers count as zero.
+class TriangleClipper : public Clipper {
+ public:
+  TriangleClipper(VertexView vertices, IndexView triangles) : vertices_(vertices), triangles_(triangles) {}
+
+  Halves cut(std::uint32_t primitive, const Box4& box, std::size_t axis, float at) const override;
+
+ private:
+  VertexView vertices_;
+  IndexView triangles_;
 };
 
 // The input of a build: at most 2^28 references, finite or empty, each primitive once. The tree is the same for any
@@ -56,5 +71,11 @@ inline constexpr BuilderInfo builders[] = {
     {TreeBuilder::spatial_splits, build_spatial_splits},
     {TreeBuilder::morton, build_morton},
 };
+
+// Large subtrees cut out and hung again where the sum of all boxes' areas grows least (Bittner, Hapala, Havran 2013),
+// in batches (Meister, Bittner 2018): the same references in a tree that is expected to cost less. No leaf is deeper
+// than max_binary_depth; parts of a primitive may come to lie side by side. The tree is the same for any number of
+// threads; the one given where nothing can be gained. The memory of the result is held for that of the argument.
+BinaryTree reinserted(BinaryTree tree, const BuildRun& run);
 
 }  // namespace raylanes

@@ -1,9 +1,8 @@
-#include "choice.hpp"
-
 #include <cmath>
 #include <cstdio>
 
 #include "../mesh/bounding_boxes.hpp"
+#include "mesh_build.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,8 +1,7 @@
 #include "mesh_build.hpp"
 
 #include "../layout/cost.hpp"
-#include "choice.hpp"
-#include "reinsertion.hpp"
+#include "builder_table.hpp"
 
 namespace raylanes {
 namespace {

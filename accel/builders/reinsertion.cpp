@@ -1,4 +1,3 @@
-#include "reinsertion.hpp"
 
 #include <algorithm>
 

@@ -6,8 +6,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
+
+#include <raylanes/queries.hpp>
 
 #include "../../dispatch/checked.hpp"
+
+// Lists as C holds them, of items of any type.
+struct raylanes_lists {
+  virtual ~raylanes_lists() = default;
+  const std::size_t* offsets = nullptr;
+  const void* items = nullptr;
+};
 
 namespace raylanes::c {
 
@@ -62,6 +72,15 @@ Enumerator enumerator_of(const char* what, std::int32_t value, std::size_t count
 inline const Path* path_of(const char* name) {
   return name == nullptr ? nullptr : &find_path(name);
 }
+
+template <class Item>
+struct Lists final : raylanes_lists {
+  explicit Lists(RayLists<Item> made) : lists(std::move(made)) {
+    offsets = lists.offsets.data();
+    items = lists.items.empty() ? nullptr : lists.items.data();
+  }
+  RayLists<Item> lists;
+};
 
 // Gives the caller what `call` makes, at *made, which is null if that throws.
 template <class Made, class Make>

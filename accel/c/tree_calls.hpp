@@ -1,24 +1,24 @@
-// The functions of one kind of tree. A file that includes this, once, defines before:
+// The functions of one kind of tree. A file that includes this defines before, and forgets after:
 //   RAYLANES_HANDLE        what C holds: raylanes_bvh
 //   RAYLANES_CALL(name)    a function: raylanes_bvh_closest
 //   RAYLANES_RECORD(name)  a record: raylanes_hit
 //   RAYLANES_OPTIONS(name) options of C++: TraceOptions
-// and in raylanes::c the types Number and Tree: float and Bvh.
+//   RAYLANES_NUMBERS       a namespace in raylanes::c with the types Number and Tree: float and Bvh
 #include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
 
 #include "../../dispatch/table/numbers.hpp"
-#include "lists.hpp"
+#include "call.hpp"
 #include "options.hpp"
 #include "stream.hpp"
 
 struct RAYLANES_HANDLE {
-  raylanes::c::Tree tree;
+  raylanes::c::RAYLANES_NUMBERS::Tree tree;
 };
 
-namespace raylanes::c {
+namespace raylanes::c::RAYLANES_NUMBERS {
 namespace {
 
 using Rays = RayRecords<RayOf<Number>>;
@@ -252,4 +252,4 @@ raylanes_status RAYLANES_CALL(winding_numbers)(const RAYLANES_HANDLE* tree, cons
 }
 
 }  // extern "C"
-}  // namespace raylanes::c
+}  // namespace raylanes::c::RAYLANES_NUMBERS

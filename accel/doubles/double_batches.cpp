@@ -1,10 +1,9 @@
-#include "double_batches.hpp"
-
 #include <algorithm>
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/shared_points.hpp"
 #include "../queries/next.hpp"
+#include "bvh_d_arrays.hpp"
 
 namespace raylanes {
 namespace {

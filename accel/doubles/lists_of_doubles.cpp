@@ -1,6 +1,6 @@
 // All hits and crossings of trees of doubles, inside and outside, and winding numbers.
-#include "../queries/crossings.hpp"
 #include "../queries/locations.hpp"
+#include "../queries/ray_lists.hpp"
 #include "bvh_d_arrays.hpp"
 
 namespace raylanes {

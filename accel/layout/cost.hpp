@@ -1,4 +1,5 @@
-// The expected cost of a ray in a tree, by the surface area heuristic (Goldsmith, Salmon 1987; MacDonald, Booth 1990).
+// A tree in numbers, first the expected cost of a ray by the surface area heuristic (Goldsmith, Salmon 1987; MacDonald,
+// Booth 1990).
 #pragma once
 
 #include "../mesh/bounding_boxes.hpp"
@@ -24,5 +25,8 @@ double sah_cost(const NodesOfMesh& tree);
 // The probability that a node or leaf that one line meets is met by another, too: Σ area² by area · Σ area. High where
 // large triangles are before small ones, low where all are small. 1 for an empty tree or one without area.
 double shared_visits(const NodesOfMesh& tree);
+
+// The tree's report with all that can be counted of it, its leaves and its bytes.
+TreeReport report_of(const NodesOfMesh& tree, std::size_t leaves, std::size_t bytes);
 
 }  // namespace raylanes

@@ -1,5 +1,3 @@
-#include "tree_report.hpp"
-
 #include <algorithm>
 
 #include "cost.hpp"

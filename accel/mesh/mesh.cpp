@@ -7,7 +7,7 @@
 
 #include <raylanes/doubles.hpp>
 
-#include "../../dispatch/text_of.hpp"
+#include "../../dispatch/checked.hpp"
 #include "../batch/in_parallel.hpp"
 #include "valid_mesh.hpp"
 

@@ -1,4 +1,4 @@
-// The closest points of a tree: options and views are checked, then points are looked for.
+// The closest points of a tree: options and views are checked, then points are looked for; and signed distances.
 #include "closest_points.hpp"
 
 #include <limits>
@@ -8,6 +8,7 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "signed_distances.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
@@ -63,6 +64,21 @@ void TriangleTree::closest_points(VertexView points, std::span<ClosestPoint> clo
   const auto row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
   const TreeView view = traced().view;
   answer_closest_points<float>(view, view.bounds, row, points, closest, options, options.counters);
+}
+
+void TriangleTree::signed_distances(VertexView points, std::span<float> distances,
+                                    const SignedDistanceOptions& options) const {
+  signed_distances_of<float>(
+      points, distances, options.active, options.progress,
+      [&](VertexView some, std::span<Location> locations, LaneBits active, const Progress* progress) {
+        locate(some, locations,
+               {options.rule, options.path, options.threads, active, options.counters, progress});
+      },
+      [&](VertexView some, std::span<ClosestPoint> closest, LaneBits active, const Progress* progress) {
+        closest_points(
+            some, closest,
+            {options.max_distance, options.path, options.threads, active, options.counters, progress});
+      });
 }
 
 }  // namespace raylanes

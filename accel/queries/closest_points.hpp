@@ -7,8 +7,8 @@
 #include "../../dispatch/table/points.hpp"
 #include "../batch/array.hpp"
 #include "../batch/batch.hpp"
-#include "../batch/point_order.hpp"
 #include "../batch/ray_source.hpp"
+#include "../batch/sort_keys.hpp"
 
 namespace raylanes {
 

@@ -1,9 +1,7 @@
-// Lists of what rays meet, from the kernels' room to the caller, on one thread or many.
+// Lists of what rays meet, in the kernels' room: one part of a batch at a time.
 #pragma once
 
 #include <algorithm>
-#include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -242,80 +240,6 @@ std::int32_t sum_of_sides(std::span<const ListEntryOf<T>> crossings) {
   std::int32_t sum = 0;
   for (const ListEntryOf<T>& crossing : crossings) sum += crossing.side;
   return sum;
-}
-
-// Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
-template <class Item>
-[[gnu::noinline]] void make_room(std::vector<Item>& items, std::size_t more, std::size_t done,
-                                 std::size_t rays) {
-  constexpr std::size_t sample = 4096;  // fewer rays foretell nothing
-  std::size_t size = items.size() + more, wanted = std::max(2 * size, std::min(rays, sample));
-  if (done >= sample) {
-    const double each = static_cast<double>(size) / static_cast<double>(done);
-    wanted = std::max(size + size / 8, static_cast<std::size_t>(1.04 * each * static_cast<double>(rays)));
-  }
-  items.reserve(wanted);
-  wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
-}
-
-// The lists of n rays in order, of what item(entry) makes of each entry, at most `max_count` a ray. Parts that threads
-// made are joined at the end. each(begin, end, counters, take) calls take(i, list) for active rays in order.
-template <class Item, class Each, class Of>
-RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count,
-                               const Each& each, const Of& item) {
-  struct Part {
-    std::size_t begin, end;
-    std::vector<Item> items;
-  };
-  RayLists<Item> lists;
-  lists.offsets.reserve(n + 1);
-  wish_for_huge_pages(lists.offsets.data(), lists.offsets.capacity() * sizeof(std::size_t));
-  lists.offsets.resize(n + 1);
-  std::vector<Part> parts;
-  std::mutex joining;
-  over_parts(plan, n, [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
-    // One thread goes on with its last part.
-    const bool goes_on = plan.threads == 1 && !parts.empty() && parts.back().end == begin;
-    Part part = goes_on ? std::move(parts.back()) : Part{begin, end, {}};
-    if (goes_on) parts.pop_back();
-    part.end = end;
-    const std::size_t foretold = (plan.threads == 1 ? n : end) - part.begin;
-    each(begin, end, counters, [&](std::size_t i, auto list) {
-      list = in_order(list);
-      if (list.size() > max_count) list = list.first(max_count);
-      if (part.items.capacity() - part.items.size() < list.size())
-        make_room(part.items, list.size(), i - part.begin, foretold);
-      for (const auto& entry : list) part.items.push_back(item(entry));
-      lists.offsets[i + 1] = list.size();
-    });
-    const std::lock_guard<std::mutex> one_at_a_time(joining);
-    parts.push_back(std::move(part));
-  });
-  for (std::size_t i = 0; i < n; ++i) lists.offsets[i + 1] += lists.offsets[i];
-  if (parts.size() == 1) lists.items = std::move(parts[0].items);
-  if (parts.size() <= 1) return lists;
-  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.begin < b.begin; });
-  lists.items.reserve(lists.offsets.back());
-  for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
-  return lists;
-}
-template <class Item, class Entry, class T, class Tree, class Of>
-RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
-                        const ListOptions& options, const Of& item) {
-  require_rays(call, rays);
-  require_skip(call, rays.skip, rays.size());
-  const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
-  return collected_lists<Item>(
-      plan_of(maker), rays.size(), maker.max_count,
-      [&](std::size_t begin, std::size_t end, TraceCounters* counters, const auto& take) {
-        each_list<Entry>(maker, rays, begin, end, counters, take);
-      },
-      item);
-}
-template <class T, class Tree>
-RayLists<HitOf<T>> hits_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
-  return lists_of<HitOf<T>, HitOf<T>>("all_hits", ListKind::hits, tree, rays, options,
-                                      [](const HitOf<T>& hit) { return hit; });
 }
 
 }  // namespace raylanes

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "../../dispatch/text_of.hpp"
+#include "../../dispatch/checked.hpp"
 #include "windings.hpp"
 
 namespace raylanes {

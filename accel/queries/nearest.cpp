@@ -9,8 +9,8 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
-#include "checked_traversal.hpp"
 #include "lists.hpp"
+#include "traced_tree.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,8 +1,8 @@
 // The next hits, and filters, which are loops over batches of these.
 #include "next.hpp"
 
-#include "checked_traversal.hpp"
-#include "lists.hpp"
+#include "passages.hpp"
+#include "traced_tree.hpp"
 
 namespace raylanes {
 
@@ -60,6 +60,21 @@ void TriangleTree::filtered_occluded_from(const Float3& from, VertexView points,
                                           std::span<std::uint8_t> occluded, const HitFilter& filter,
                                           const SegmentEnds& ends, const TraceOptions& options) const {
   filtered(traced(), filter, options).occluded_from(from, points, occluded, ends);
+}
+
+Hit TriangleTree::closest_crossing(const Ray& ray, const TraceOptions& options) const {
+  require_exact(options);
+  return closest_passage<float>(*this, ray, options);
+}
+void TriangleTree::closest_crossing(RayView rays, HitView hits, const TraceOptions& options) const {
+  require_exact(options);
+  closest_passages<float>(*this, traced(), {.records = rays, .active = options.active, .skip = options.skip},
+                          hits, options);
+}
+void TriangleTree::closest_crossing(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
+  require_exact(options);
+  closest_passages<float>(*this, traced(), {.arrays = &rays, .active = options.active, .skip = options.skip},
+                          hits, options);
 }
 
 }  // namespace raylanes

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "../../dispatch/table/winding.hpp"
-#include "../batch/point_order.hpp"
+#include "../batch/sort_keys.hpp"
 #include "point_places.hpp"
 
 namespace raylanes {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "../../dispatch/checked.hpp"
-#include "../../dispatch/text_of.hpp"
 #include "../builders/builder_table.hpp"
 #include "../layout/bvh_arrays.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
-#include "../queries/checked_traversal.hpp"
+#include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "../queries/passages/passages.hpp"
+#include "../queries/passages.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {
 
-void require_exact(const TraceOptions& options) {
+void require_exact_in_scene(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument(
         "scene: next hits and filters take the test exact alone; others have no order of hits");
@@ -19,7 +19,7 @@ void require_exact(const TraceOptions& options) {
 // Replaces the hits that the filter turns down by those behind them.
 void filter_scene_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
                        const SceneHitFilter& filter, const TraceOptions& options, std::uint32_t mask) {
-  require_exact(options);
+  require_exact_in_scene(options);
   trace_hits(scene, rays, hits, options, mask);
   if (!filter) return;
   TraceOptions again = options;
@@ -42,7 +42,7 @@ void filter_occluded(const SceneParts& scene, const RaySource& rays, const char*
 }
 
 void require_triangles(const Scene& scene, const TraceOptions& options) {
-  require_exact(options);
+  require_exact_in_scene(options);
   for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
     if (scene.tree(i) == nullptr)
       throw std::invalid_argument("scene: passages are of triangles alone, geometry " + std::to_string(i) +
@@ -113,7 +113,7 @@ void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitVi
 void require_after_in_scene(const TraceOptions& options, std::size_t rays) {
   require_after("scene", options.after, rays);
   if (options.after.first == nullptr) return;
-  require_exact(options);
+  require_exact_in_scene(options);
   if (options.after.to_instance == 0)
     throw std::invalid_argument(
         "scene: after takes hits in scenes, which name an instance besides the primitive");

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../queries/checked_traversal.hpp"
+#include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {

@@ -3,7 +3,6 @@
 #include "../batch/routing.hpp"
 #include "../layout/bvh_arrays.hpp"
 #include "../layout/cost.hpp"
-#include "../layout/tree_report.hpp"
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {

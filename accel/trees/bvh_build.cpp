@@ -1,6 +1,5 @@
-#include "../builders/choice.hpp"
+#include "../builders/builder_table.hpp"
 #include "../builders/mesh_build.hpp"
-#include "../builders/sah/triangle_clipper.hpp"
 #include "../mesh/valid_mesh.hpp"
 
 namespace raylanes {

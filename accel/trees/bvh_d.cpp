@@ -5,11 +5,9 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../doubles/bvh_d_arrays.hpp"
-#include "../doubles/double_batches.hpp"
 #include "../layout/cost.hpp"
-#include "../layout/tree_report.hpp"
 #include "../mesh/valid_mesh.hpp"
-#include "../queries/passages/passages.hpp"
+#include "../queries/passages.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,8 +1,8 @@
 #include <stdexcept>
 
+#include "../builders/builder_table.hpp"
 #include "../builders/kd/kd_builders.hpp"
 #include "../builders/mesh_build.hpp"
-#include "../builders/sah/triangle_clipper.hpp"
 #include "../layout/kdtree_arrays.hpp"
 #include "../mesh/valid_mesh.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "../../accel/builders/choice.hpp"
+#include "../../accel/builders/mesh_build.hpp"
 #include "../../accel/builders/mesh_references.hpp"
 
 namespace raylanes::bench {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "../../dispatch/text_of.hpp"
+#include "../../dispatch/checked.hpp"
 #include "commands.hpp"
 #include "shared_options.hpp"
 

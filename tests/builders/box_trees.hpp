@@ -12,7 +12,6 @@
 
 #include "../../accel/batch/in_parallel.hpp"
 #include "../../accel/builders/builder_table.hpp"
-#include "../../accel/builders/reinsertion.hpp"
 #include "../../accel/layout/bvh_arrays.hpp"
 #include "../../accel/mesh/bounding_boxes.hpp"
 #include "../support/random_input.hpp"

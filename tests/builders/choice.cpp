@@ -1,12 +1,11 @@
 // The builder that BuildOptions::choose takes: by the mesh and the number of rays alone, said in a line, and no hit
 // depends on it.
-#include "../../accel/builders/choice.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "../../accel/builders/mesh_build.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../accel/builders/sah/triangle_clipper.hpp"
+#include "../../accel/builders/builder_table.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

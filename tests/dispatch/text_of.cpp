@@ -1,10 +1,10 @@
 // Numbers in messages read back as they were.
-#include "../../dispatch/text_of.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <string>
+
+#include "../../dispatch/checked.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -1,6 +1,6 @@
-#include "triangle_clipper.hpp"
-
 #include <cmath>
+
+#include "../builder_table.hpp"
 
 namespace raylanes {
 namespace {

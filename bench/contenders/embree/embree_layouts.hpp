@@ -16,7 +16,7 @@
 
 #include <raylanes/types.hpp>
 
-#include "../../../dispatch/text_of.hpp"
+#include "../../../dispatch/checked.hpp"
 
 namespace raylanes::bench {
 

@@ -10,7 +10,7 @@
 
 #include <raylanes/rays.hpp>
 
-#include "../../../dispatch/text_of.hpp"
+#include "../../../dispatch/checked.hpp"
 #include "../scenes/camera.hpp"
 #include "../scenes/splitmix.hpp"
 #include "aim.hpp"

@@ -17,13 +17,13 @@ MUTANTS = [
         ('c: strides of any size', 'if (stride < size)', 'if (stride < 1)'),
         ('c: sizes that overflow', 'count - 1 > (most - size) / stride', 'false'),
     ]),
-    *rows_of('accel/c/call.hpp', 'test_c_calls', source='accel/c/bvh.cpp', rows=[
+    *rows_of('accel/c/call.hpp', 'test_c_calls', source='accel/c/trees.cpp', rows=[
         ('c: failed calls leave pointers', '*made = nullptr;', ''),
     ]),
     *rows_of('accel/c/call.hpp', 'test_c_calls', source='accel/c/options.cpp', rows=[
         ('c: enumerators wrap', 'if (index >= count)', 'if (index % 256 >= count)'),
     ]),
-    *rows_of('accel/c/options.hpp', 'test_c_calls', source='accel/c/bvh.cpp', rows=[
+    *rows_of('accel/c/options.hpp', 'test_c_calls', source='accel/c/trees.cpp', rows=[
         ('c: earlier options are read beyond their end', 'std::memcpy(static_cast<void*>(&options), given, size);',
          'std::memcpy(static_cast<void*>(&options), given, sizeof options);'),
         ('c: max_count wraps', 'std::min<std::size_t>(c.max_count, std::numeric_limits<std::uint32_t>::max())',

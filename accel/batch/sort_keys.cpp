@@ -1,9 +1,24 @@
-#include "point_order.hpp"
-
-#include "../../dispatch/bits.hpp"
 #include "sort_keys.hpp"
 
+#ifdef RAYLANES_VQSORT
+#include <hwy/contrib/sort/vqsort.h>
+#else
+#include <algorithm>
+#endif
+
+#include "../../dispatch/bits.hpp"
+
 namespace raylanes {
+
+void sort_keys(std::span<std::uint64_t> keys) {
+#ifdef RAYLANES_VQSORT
+  static thread_local hwy::Sorter sorter;  // holds memory, too slow to allocate for each node of a tree
+  sorter(keys.data(), keys.size(), hwy::SortAscending());
+#else
+  std::sort(keys.begin(), keys.end());
+#endif
+}
+
 namespace {
 
 // Cells of the box, with half as much on each side; NaN is in the first one.

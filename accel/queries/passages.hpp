@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "../../../dispatch/bits.hpp"
-#include "../../../dispatch/quiet_floats.hpp"
-#include "../../mesh/boundary.hpp"
-#include "../lists.hpp"
-#include "../next.hpp"
+#include "../../dispatch/bits.hpp"
+#include "../../dispatch/quiet_floats.hpp"
+#include "../mesh/boundary.hpp"
+#include "lists.hpp"
+#include "next.hpp"
 
 namespace raylanes {
 

@@ -1,4 +1,4 @@
-#include "crossings.hpp"
+#include "ray_lists.hpp"
 
 namespace raylanes {
 namespace {
@@ -45,6 +45,22 @@ void TriangleTree::count_crossings(const RayArrays& rays, std::span<CrossingCoun
                                    const ListOptions& options) const {
   count_crossings_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip},
                             counts, options);
+}
+
+RayLists<Hit> TriangleTree::all_hits(RayView rays, const ListOptions& options) const {
+  return hits_of<float>(traced(), {.records = rays, .active = options.active, .skip = options.skip}, options);
+}
+RayLists<Hit> TriangleTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
+  return hits_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
+}
+
+std::size_t TriangleTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
+                                   const ListOptions& options) const {
+  require_size("all_hits", "offsets", offsets.size(), "rays and an end", rays.count + 1);
+  const RayLists<Hit> lists = all_hits(rays, options);
+  std::copy(lists.offsets.begin(), lists.offsets.end(), offsets.begin());
+  if (lists.items.size() <= hits.size()) std::copy(lists.items.begin(), lists.items.end(), hits.begin());
+  return lists.items.size();
 }
 
 }  // namespace raylanes
