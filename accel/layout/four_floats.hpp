@@ -1,5 +1,6 @@
 // Four floats in a register that every processor of the platform has: SSE2 on x86-64, NEON on AArch64. For the code
-// that fills leaves and nodes, which is not compiled once per ISA path.
+// that fills leaves and nodes, which is not compiled once per ISA path. No batch of xsimd does instead: its min and max
+// answer NaN and zeros differently on SSE2 and NEON, where a tree must have the same bytes.
 #pragma once
 
 #include <cstddef>
