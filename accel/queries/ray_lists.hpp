@@ -9,7 +9,7 @@
 
 namespace raylanes {
 
-// Room for more items of a part, `count` of whose `rays` rays are done: at once for as many as all of them may need.
+// Room for more items of a part, `done` of whose `rays` rays are done: at once for as many as all of them may need.
 template <class Item>
 [[gnu::noinline]] void make_room(std::vector<Item>& items, std::size_t more, std::size_t done,
                                  std::size_t rays) {
@@ -23,11 +23,15 @@ template <class Item>
   wish_for_huge_pages(items.data() + items.size(), (items.capacity() - items.size()) * sizeof(Item));
 }
 
-// The lists of n rays in order, of what item(entry) makes of each entry, at most `max_count` a ray. Parts that threads
-// made are joined at the end. each(begin, end, counters, take) calls take(i, list) for active rays in order.
-template <class Item, class Each, class Of>
-RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32_t max_count,
-                               const Each& each, const Of& item) {
+// The lists of rays in order, of what item(entry) makes of each entry. Parts that threads made are joined at the end.
+template <class Item, class Entry, class T, class Tree, class Of>
+RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
+                        const ListOptions& options, const Of& item) {
+  require_rays(call, rays);
+  require_skip(call, rays.skip, rays.size());
+  const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
+  const BatchPlan plan = plan_of(maker);
+  const std::size_t n = rays.size();
   struct Part {
     std::size_t begin, end;
     std::vector<Item> items;
@@ -45,12 +49,12 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
     if (goes_on) parts.pop_back();
     part.end = end;
     const std::size_t foretold = (plan.threads == 1 ? n : end) - part.begin;
-    each(begin, end, counters, [&](std::size_t i, auto list) {
+    each_list<Entry>(maker, rays, begin, end, counters, [&](std::size_t i, std::span<Entry> list) {
       list = in_order(list);
-      if (list.size() > max_count) list = list.first(max_count);
+      if (list.size() > maker.max_count) list = list.first(maker.max_count);
       if (part.items.capacity() - part.items.size() < list.size())
         make_room(part.items, list.size(), i - part.begin, foretold);
-      for (const auto& entry : list) part.items.push_back(item(entry));
+      for (const Entry& entry : list) part.items.push_back(item(entry));
       lists.offsets[i + 1] = list.size();
     });
     const std::lock_guard<std::mutex> one_at_a_time(joining);
@@ -63,19 +67,6 @@ RayLists<Item> collected_lists(const BatchPlan& plan, std::size_t n, std::uint32
   lists.items.reserve(lists.offsets.back());
   for (const Part& part : parts) lists.items.insert(lists.items.end(), part.items.begin(), part.items.end());
   return lists;
-}
-template <class Item, class Entry, class T, class Tree, class Of>
-RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
-                        const ListOptions& options, const Of& item) {
-  require_rays(call, rays);
-  require_skip(call, rays.skip, rays.size());
-  const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
-  return collected_lists<Item>(
-      plan_of(maker), rays.size(), maker.max_count,
-      [&](std::size_t begin, std::size_t end, TraceCounters* counters, const auto& take) {
-        each_list<Entry>(maker, rays, begin, end, counters, take);
-      },
-      item);
 }
 template <class T, class Tree>
 RayLists<HitOf<T>> hits_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
