@@ -1,4 +1,4 @@
-// The types of trees of floats and of doubles, by their number.
+// The types of calls of trees by the number of the trees, beside the plain data of dispatch/table/numbers.hpp.
 #pragma once
 
 #include <type_traits>
@@ -6,42 +6,34 @@
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
+#include "../../dispatch/table/numbers.hpp"
+
 namespace raylanes::python {
 
 template <class T>
-struct TypesOf;
+struct CallTypesOf;
 template <>
-struct TypesOf<float> {
+struct CallTypesOf<float> {
   using Tree = TriangleTree;
-  using Ray = raylanes::Ray;
-  using Hit = raylanes::Hit;
   using Crossing = raylanes::Crossing;
   using Ends = SegmentEnds;
   using Options = TraceOptions;
-  using ClosestPoint = raylanes::ClosestPoint;
   using ClosestOptions = ClosestPointOptions;
   using DistanceOptions = SignedDistanceOptions;
 };
 template <>
-struct TypesOf<double> {
+struct CallTypesOf<double> {
   using Tree = BvhD;
-  using Ray = RayD;
-  using Hit = HitD;
   using Crossing = CrossingD;
   using Ends = SegmentEndsD;
   using Options = TraceOptionsD;
-  using ClosestPoint = ClosestPointD;
   using ClosestOptions = ClosestPointOptionsD;
   using DistanceOptions = SignedDistanceOptionsD;
 };
 
 // The base of all trees with these numbers.
 template <class T>
-using TreeOf = typename TypesOf<T>::Tree;
-template <class T>
-using RayOf = typename TypesOf<T>::Ray;
-template <class T>
-using HitOf = typename TypesOf<T>::Hit;
+using TreeOf = typename CallTypesOf<T>::Tree;
 
 // The numbers of a kind of trees.
 template <class Tree>

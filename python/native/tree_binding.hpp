@@ -110,7 +110,8 @@ HitRecords<AnyHit> hits_behind(const py::object& after) {
 // How rays are traced: (test, grade, mode, hint, path, threads, facing, progress, skip), as the Python text passes it
 // on; strings and arrays live as long as the tuple.
 template <class T>
-typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active, std::size_t rays) {
+typename CallTypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active,
+                                               std::size_t rays) {
   const auto text = [&](std::size_t i) {
     const char* const utf8 = PyUnicode_AsUTF8(py::object(how[i]).ptr());
     return utf8 != nullptr ? utf8 : throw py::error_already_set();
@@ -124,7 +125,7 @@ typename TypesOf<T>::Options trace_options(const py::tuple& how, const py::objec
   options.threads = usable_threads(how[5].cast<int>());
   options.facing = named<Facing>("facing", facing_names, text(6));
   options.active = bits_of(active, rays), options.skip = skips_of(how[8]);
-  typename TypesOf<T>::Options taken;
+  typename CallTypesOf<T>::Options taken;
   take(taken, options);
   return taken;
 }
@@ -180,7 +181,7 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
                    const py::array& occluded, const std::array<T, 2>& ends, const py::tuple& how,
                    const py::object& active, const py::object& filter) {
   const auto to_points = vertices_of<T>(points);
-  const typename TypesOf<T>::Ends between{ends[0], ends[1]};
+  const typename CallTypesOf<T>::Ends between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, to_points.count);
   filtered_query<HitOf<T>>(shared, options, how[7], to_points.count, filter,
@@ -254,8 +255,8 @@ void closest_points(const SharedTree<T>& shared, const py::array& points, const 
                     T max_distance, const char* path, int threads, const py::object& active,
                     const py::object& progress) {
   const auto from = vertices_of<T>(points);
-  const auto to = span_of<typename TypesOf<T>::ClosestPoint>(answers);
-  auto options = plain_options<typename TypesOf<T>::ClosestOptions>(path, threads, active, from.count);
+  const auto to = span_of<ClosestPointOf<T>>(answers);
+  auto options = plain_options<typename CallTypesOf<T>::ClosestOptions>(path, threads, active, from.count);
   options.max_distance = max_distance;
   query(shared, options, progress, from.count,
         [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_points(from, to, heard); });
@@ -267,7 +268,7 @@ void signed_distances(const SharedTree<T>& shared, const py::array& points, cons
                       const py::object& active, const py::object& progress) {
   const auto from = vertices_of<T>(points);
   const auto to = span_of<T>(distances);
-  auto options = plain_options<typename TypesOf<T>::DistanceOptions>(path, threads, active, from.count);
+  auto options = plain_options<typename CallTypesOf<T>::DistanceOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;
   query(shared, options, progress, from.count,

@@ -30,7 +30,7 @@ py::dict common_report(const Report& report, std::string_view builder) {
 template <class T>
 void bind_queries(py::module_& module, const char* name) {
   using Rays = RayRecords<RayOf<T>>;
-  using CrossingOf = typename TypesOf<T>::Crossing;
+  using CrossingOf = typename CallTypesOf<T>::Crossing;
   constexpr RayLists<HitOf<T>> (TreeOf<T>::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
   constexpr RayLists<CrossingOf> (TreeOf<T>::*passages)(Rays, const ListOptions&) const =
       &TreeOf<T>::crossings;
