@@ -38,6 +38,16 @@ TEST(ProceduralScenes, sizes_names_and_determinism) {
   for (const std::string& name : procedural_scene_names()) EXPECT_NO_THROW(make_procedural_scene(name));
 }
 
+TEST(ProceduralScenes, spheres_are_closed) {
+  const Mesh mesh = make_procedural_scene("spheres").mesh;
+  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, mesh.triangles.size());
+  EXPECT_GT(report.open, 0u);
+  EXPECT_EQ(report.inconsistent, 0u);
+  // Only the floor has a rim: it lies at height 0.
+  for (const FaultyEdge& edge : report.first)
+    EXPECT_TRUE(edge.fault != EdgeFault::open || mesh.vertices[edge.from][1] == 0.0f);
+}
+
 TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
   for (const std::string name : {"sphere", ""}) {
     EXPECT_THROW(make_procedural_scene(name), std::invalid_argument);
@@ -46,6 +56,16 @@ TEST(ProceduralScenes, unknown_name_lists_the_valid_ones) {
               std::string::npos)
         << message;
   }
+}
+
+TEST(Subdivide, cuts_at_the_midpoints_of_edges) {
+  Mesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 4, 0}, {2, 4, 6}}, {{0, 1, 2}, {3, 2, 1}}};
+  subdivide(mesh, 1);
+  const std::vector<Float3> middles{{1, 0, 0}, {1, 2, 0}, {0, 2, 0}, {1, 4, 3}, {2, 2, 3}};
+  EXPECT_EQ(std::vector(mesh.vertices.begin() + 4, mesh.vertices.end()), middles);
+  const std::vector<Index3> quarters{{0, 4, 6}, {4, 1, 5}, {6, 5, 2}, {4, 5, 6},
+                                     {3, 7, 8}, {7, 2, 5}, {8, 5, 1}, {7, 5, 8}};
+  EXPECT_EQ(mesh.triangles, quarters);
 }
 
 TEST(Subdivide, closed_meshes_stay_closed_and_large_numbers_finite) {

@@ -1,5 +1,14 @@
 """Good runs of the tool: what is called, and what holds of its rows and of its output."""
-from tool_user import all_of
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+
+from tool_user import TRIANGLE, all_of
+
+MAX_WIDTH = 100
 
 
 def of(rows, **wanted):
@@ -55,7 +64,6 @@ RUNS = [
             {*row["wrong_per_million"].values()} <= {0, None} for row in of(rows, test="exact"))),
     ("trace hall --size 96x64 --path all --rays primary,shadow,light,diffuse,ao --image hall.png",
      ("hall.png", 96, 64), "same bytes", lambda rows: values(of(rows, rays="primary"), "hits") == {96 * 64}),
-    ("trace --size 8x8 --mode single", None, "", lambda rows: values(rows, "scene") == {"spheres", "hall", "fractal"}),
     ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight --warm", None,
      "", lambda rows: calls_are_batches(rows) and values(rows, "warm") == {True}),
     ("trace hall --query all,crossings,count --size 24x16 --against cgal", None, "", lambda rows:
@@ -68,7 +76,6 @@ RUNS = [
             for row in of(rows, contender="scene") + of(rows, contender="scene_turned"))),
     ("trace hall --build spatial_splits --optimize --size 8x8", None, "",
      lambda rows: values(rows, "build") == {"spatial_splits+optimized"}),
-    ("trace hall --tree auto --size 8x8", None, "chosen: binned_sah", bool),
     ("points box.obj --points grid --grid 4x3x2 --query inside,signed --image slice.png --against cgal",
      ("slice.png", 4, 3), "blue inside", lambda rows: right(rows) and values(rows, "inside", "judged") == {(24, 24)} and
      [row["contender"] for row in rows] == ["bvh", "kdtree", "bvh", "cgal", "bvh", "kdtree"]),
@@ -112,9 +119,66 @@ BESIDE_EMBREE = [
     ("trace hall --test exact,moller_trumbore --grade fast --size 32x32 --against embree", None, "", lambda rows:
      all_of(row["ours_wrong"] == 0 and ("apart_per_million" in row) == (row["test"] != "exact")
             for row in of(rows, contender="raylanes"))),
-    ("trees hall --size 32x32 --against embree", None, " × high ", bool),
     ("trees hall --stages --rounds 1 --threads 2 --against embree", None, "", lambda rows: len(rows) == 5 and
      all_of({"build_ratio_to_embree", "refit_ratio_to_embree"} <= row.keys() for row in rows[:2])),
     ("trees --frames frame0.obj frame1.obj frame2.obj --size 8x8 --rounds 1 --against embree", None, "",
      lambda rows: sum("embree_refit_seconds" in row for row in rows) == 2),
 ]
+
+
+def width_faults(text):
+    """Lines too wide for a terminal, other than notes, which are sentences."""
+    return [line for line in text.split("\n") if len(line) > MAX_WIDTH and
+            not line.startswith(("Embree of ", "chosen: ", "slice: "))]
+
+
+def test_runs(tool, runs, skip=""):
+    """Each run is good, fits a terminal, writes its picture, and its rows hold. Without what `skip` names none does."""
+    for call, picture, says, holds in runs:
+        words = [*call.split(), "--json", "out.json"]
+        if words[0] != "isa" and not {"--stages", "--frames"} & {*words}:
+            words += ["--seconds", "0"]
+        result = tool.run(*words)
+        if skip and skip in result.stderr:
+            print(f"SKIPPED: {len(runs)} runs, {result.stderr.strip()}")
+            return
+        good = result.returncode == 0 and says in result.stdout and not width_faults(result.stdout)
+        tool.check(good and holds(tool.rows()), f"{call}: {width_faults(result.stdout)}", result)
+        if picture:
+            (name, *least), size = picture, tool.png_size(picture[0])
+            exact = "--image" in words
+            tool.check(size == tuple(least) if exact else size >= tuple(least), f"{call}: a picture of {size}", result)
+
+
+def cells_of_markdown(text):
+    return [[cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+            for line in text.strip().split("\n")]
+
+
+def test_formats(tool):
+    """CSV, Markdown and JSON have the rows of --json on standard output, and nothing else; names are made harmless."""
+    hostile = os.fsencode(tool.folder) + b"/a|b,\"c\"\xe9\x1b[31m.obj"
+    pathlib.Path(os.fsdecode(hostile)).write_text(TRIANGLE)
+    call = ["trace", "hall", hostile, "--size", "16x12", "--seconds", "0", "--mode", "single,call", "--rays", "primary",
+            "--json", "out.json"]
+    result = tool.run(*call, "--format", "csv")
+    rows, lines = tool.rows(), list(csv.DictReader(io.StringIO(result.stdout, newline="")))
+    scenes = ["hall", "hall", *2 * ['a|b,"c"\\xe9\\x1b[31m']]
+    same = all_of(str(row[key]) == cell for row, line in zip(rows, lines) for key, cell in line.items()
+                  if isinstance(row.get(key), (int, str)) and not isinstance(row[key], bool) and row["scene"] == "hall")
+    tool.check(result.returncode == 0 and len(rows) == 4 and same and [line["scene"] for line in lines] == scenes,
+               "CSV has the values of JSON", result)
+    result = tool.run(*call, "--format", "csv", "--columns", "hits,scene")
+    tool.check(result.stdout.splitlines()[:2] == ["hits,scene", "192,hall"], "two columns of CSV", result)
+    result = tool.run(*call, "--format", "markdown")
+    titles, dashes, *cells = cells_of_markdown(result.stdout)
+    tool.check("Mrays/s" in titles and {*dashes} == {"---"} and [line[0] for line in cells] == scenes and
+               all_of(len(line) == len(titles) for line in cells), "a table of Markdown", result)
+    result = tool.run(*call, "--format", "json")
+    tool.check(json.loads(result.stdout)["rows"] == tool.rows(), "JSON on standard output is that of --json", result)
+    result = tool.run(*call[:2], *call[3:], "--columns", "mode,hits,scene")
+    tool.check("\nmode    hits  scene\nsingle   192  hall\n" in result.stdout, "named columns in their order", result)
+    result = tool.run("roots", "--stride", "524288", "--seconds", "0", "--method", "hardware", "--columns", "all")
+    tool.check(result.returncode == 0 and width_faults(result.stdout), "all columns are wider", result)
+    result = tool.run("isa", "--json", "-")
+    tool.check(len(json.loads(result.stdout)["rows"]) > 1 and "supported" in result.stderr, "--json -", result)

@@ -39,11 +39,12 @@ class Tool:
                               cwd=self.folder, restore_signals=not short_files,
                               preexec_fn=limit if short_files else None)
 
-    def check(self, holds, what, result):
+    def check(self, holds, what, result=None):
         self.checks += 1
         if not holds:
             self.failures += 1
-            print(f"FAILED: {what}: exit {result.returncode}\nstdout: {result.stdout}\nstderr: {result.stderr}")
+            print(f"FAILED: {what}" + (f": exit {result.returncode}\nstdout: {result.stdout}\nstderr: {result.stderr}"
+                                       if result else ""))
 
     def expect_error(self, words, *arguments, status=USAGE, **environment):
         """One line of bounded length that a terminal can show, with these words, and that exit status."""
