@@ -11,7 +11,7 @@
 namespace raylanes::bench {
 namespace {
 
-const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, denormal, -0.0f}};
 
 // Four corners, then shorts 2 0 1 3: a file's binary part.
 std::string buffer_bytes() {
@@ -55,9 +55,6 @@ class Gltf : public MeshReader {
     MeshReader::SetUp();
     write("a.bin", buffer_bytes());
   }
-  void refuse(const Document& document, const std::string& expected) const {
-    expect_error("a.gltf", document.text(), expected);
-  }
   // The one part of a document that is wrong, and what is said of it.
   struct Wrong {
     std::string Document::*part;
@@ -67,7 +64,7 @@ class Gltf : public MeshReader {
     for (const Wrong& wrong : list) {
       Document document;
       document.*wrong.part = wrong.text;
-      refuse(document, wrong.expected);
+      expect_error("a.gltf", document.text(), wrong.expected);
     }
   }
 };
@@ -91,7 +88,9 @@ TEST_F(Gltf, buffers_inside_and_in_glb) {
   document.primitive = R"("attributes":{"POSITION":0},"mode":4)";
   document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
   document.buffer = R"("byteLength":56)";
-  expect_same_triangles(read("a.glb", glb(document.text(), buffer_bytes())), corners, {{0, 1, 2}});
+  const std::string whole = glb(document.text(), buffer_bytes());
+  expect_same_triangles(read("a.glb", whole), corners, {{0, 1, 2}});
+  for (std::size_t size = 0; size < whole.size(); ++size) expect_error("b.glb", whole.substr(0, size), "");
   document.buffer =
       R"("uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",)"
       R"("byteLength":36)";
@@ -99,14 +98,6 @@ TEST_F(Gltf, buffers_inside_and_in_glb) {
   const std::string view = R"("byteLength":48})";
   text.replace(text.find(view), view.size(), R"("byteLength":36})");
   expect_same_triangles(read("b.gltf", text), corners, {{0, 1, 2}});
-}
-
-TEST_F(Gltf, every_truncation_of_a_glb_is_an_error) {
-  Document document;
-  document.buffer = R"("byteLength":56)";
-  const std::string whole = glb(document.text(), buffer_bytes());
-  ASSERT_EQ(read("a.glb", whole).triangles.size(), 2u);
-  for (std::size_t size = 0; size < whole.size(); ++size) expect_error("a.glb", whole.substr(0, size), "");
 }
 
 TEST_F(Gltf, rotations_matrices_and_points_between) {
@@ -119,17 +110,6 @@ TEST_F(Gltf, rotations_matrices_and_points_between) {
   expect_same_triangles(read("a.gltf", document.text()), {{-6, 5, 7}, {-6, 6, 7}, {-7, 5, 7}}, {{0, 1, 2}});
   document.nodes = R"([{"children":[1],"translation":[10,0,0]},{"mesh":0,"scale":[2,2,2]}])";
   expect_same_triangles(read("b.gltf", document.text()), {{10, 0, 0}, {12, 0, 0}, {10, 2, 0}}, {{0, 1, 2}});
-}
-
-TEST_F(Gltf, zeros_keep_their_sign_without_a_transformation) {
-  Bytes bytes;
-  bytes.put(Float3{-0.0f, 0, 0}).put(Float3{1, -0.0f, 0}).put(Float3{0, 1, denormal});
-  write("a.bin", bytes.str() + std::string(20, '\0'));
-  Document document;
-  document.primitive = R"("attributes":{"POSITION":0})";
-  document.position_accessor = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")";
-  expect_same_triangles(read("a.gltf", document.text()), {{-0.0f, 0, 0}, {1, -0.0f, 0}, {0, 1, denormal}},
-                        {{0, 1, 2}});
 }
 
 // --- What must be refused
@@ -148,17 +128,21 @@ TEST_F(Gltf, nodes_are_trees_of_bounded_depth) {
 }
 
 TEST_F(Gltf, nested_text_is_refused_wherever_it_is) {
-  for (const char* key : {"extras", "extensions", "nodes", "anything"}) {
-    const std::string deep(200000, '[');
-    expect_error("a.gltf", R"({"asset":{"version":"2.0"},")" + std::string(key) + "\":" + deep,
+  for (const std::string key : {"extras", "extensions", "nodes", "anything"})
+    expect_error("a.gltf", R"({"asset":{"version":"2.0"},")" + key + "\":" + std::string(200000, '['),
                  "nested deeper");
-  }
 }
 
-TEST_F(Gltf, values_of_the_wrong_kind) {
+TEST_F(Gltf, values_of_the_wrong_kind_or_beyond_their_buffers) {
   for (const std::string children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"})
     refuse_each({{&Document::nodes, R"([{"children":)" + children + "},{\"mesh\":0}]",
                   "nodes[0].children: allowed is a list of whole numbers"}});
+  const auto positions = [](const std::string& place, const std::string& count) {
+    return place + R"("componentType":5126,"count":)" + count + R"(,"type":"VEC3")";
+  };
+  const std::string whole = R"("bufferView":0,)", huge = "9007199254740992",
+                    beyond = "do not fit their buffer";
+  const Document plain;
   refuse_each({
       {&Document::nodes, R"([{"mesh":0.5}])", "nodes[0].mesh: allowed is a whole number"},
       {&Document::nodes, R"([{"mesh":0,"scale":[1,2]}])", "nodes[0].scale: allowed are 3 numbers"},
@@ -166,44 +150,23 @@ TEST_F(Gltf, values_of_the_wrong_kind) {
       {&Document::nodes, R"([{"mesh":3}])", "mesh 3 is out of range, there are 1"},
       {&Document::primitive, R"("indices":1)", "meshes[0].primitives[0]: has no attributes"},
       {&Document::primitive, R"("attributes":{"NORMAL":0})", "has no attribute POSITION"},
-      {&Document::primitive, R"("attributes":{"POSITION":"0"})",
-       "attributes.POSITION: allowed is a whole number"},
       {&Document::primitive, R"("attributes":{"POSITION":0},"mode":7)", "mode 7, allowed are 0 to 6"},
       {&Document::primitive, R"("attributes":{"POSITION":0})", "has 4 corners, allowed are multiples of 3"},
       {&Document::primitive, R"("attributes":{"POSITION":1})", "allowed positions are three floats"},
       {&Document::primitive, R"("attributes":{"POSITION":0},"indices":0)",
        "allowed indices are unsigned bytes, shorts and ints"},
-  });
-}
-
-TEST_F(Gltf, accessors_beyond_their_buffers) {
-  const auto positions = [](const std::string& place, const std::string& count) {
-    return place + R"("componentType":5126,"count":)" + count + R"(,"type":"VEC3")";
-  };
-  const std::string whole = R"("bufferView":0,)", huge = "9007199254740992",
-                    beyond = "do not fit their buffer";
-  refuse_each({
       {&Document::position_accessor, positions(whole, "5"), beyond},
       {&Document::position_accessor, positions(whole + R"("byteOffset":1,)", "4"), beyond},
       {&Document::position_accessor, positions(whole + R"("byteOffset":)" + huge + ",", "1"), beyond},
       {&Document::position_accessor, positions(whole, huge), beyond},
-      {&Document::index_view, R"("buffer":0,"byteOffset":49,"byteLength":8)", beyond},
-      {&Document::index_view, R"("buffer":0,"byteOffset":)" + huge + R"(,"byteLength":)" + huge, beyond},
-      {&Document::index_view, R"("buffer":1,"byteLength":8)", "buffer 1 is out of range"},
       {&Document::position_accessor, positions(R"("bufferView":9,)", "4"), "bufferView 9 is out of range"},
       {&Document::position_accessor, positions("", "4"), "has no data"},
-      {&Document::position_accessor, positions(whole, "0"),
-       "accessors[0].count: allowed is a whole number of 1 or more"},
-  });
-}
-
-TEST_F(Gltf, sparse_and_compressed_data_is_named) {
-  const Document plain;
-  refuse_each({
-      {&Document::position_accessor, plain.position_accessor + R"(,"sparse":{"count":1})",
-       "accessors[0].sparse"},
-      {&Document::primitive,
-       plain.primitive + R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0}})",
+      {&Document::position_accessor, positions(whole, "0"), "allowed is a whole number of 1 or more"},
+      {&Document::index_view, R"("buffer":0,"byteOffset":)" + huge + R"(,"byteLength":)" + huge, beyond},
+      {&Document::index_view, R"("buffer":1,"byteLength":8)", "buffer 1 is out of range"},
+      // Data that is not where plain numbers are.
+      {&Document::position_accessor, plain.position_accessor + R"(,"sparse":{"count":1})", "[0].sparse"},
+      {&Document::primitive, plain.primitive + R"(,"extensions":{"KHR_draco_mesh_compression":{}})",
        "uses KHR_draco_mesh_compression"},
       {&Document::index_view, plain.index_view + R"(,"extensions":{"EXT_meshopt_compression":{}})",
        "uses EXT_meshopt_compression"},
@@ -234,17 +197,6 @@ TEST_F(Gltf, buffers_come_from_beside_the_file) {
                {&Document::buffer, R"("byteLength":56)", "buffer '': allowed is"},
                {&Document::buffer, R"("uri":"data:application/octet-stream;base64,????","byteLength":3)",
                 "is no glTF 2: "}});
-}
-
-TEST_F(Gltf, other_formats_under_its_name) {
-  expect_error("a.gltf", ply_header("ascii", 3, 1).substr(0, 60), "is no glTF: ");
-  expect_error("b.gltf", obj_triangle + "f 1 2 3\n", "is no glTF: ");
-  expect_error("c.gltf", "[1,2]", "is no glTF: no JSON object");
-  expect_error("d.gltf", "{}", "is no glTF 2: ");
-  expect_error("e.gltf", "{\"asset\":", "is no glTF: ");
-  expect_error("f.gltf", "", "is no glTF: ");
-  expect_error("g.glb", "glTF garbage", "is a truncated or malformed .glb file");
-  expect_error("h.gltf", R"({"asset":{"version":"2.0"}})", "scene 0 is out of range");
 }
 
 }  // namespace

@@ -37,13 +37,6 @@ TEST(TakeTurns, every_round_is_a_permutation_and_none_always_follows_the_same) {
     }
 }
 
-TEST(TakeTurns, the_time_decides_the_rounds) {
-  const std::vector<std::function<void()>> nothing{[] {}};
-  EXPECT_GT(take_turns(nothing, {0.02, 1})[0].seconds.size(), 100u);
-  EXPECT_EQ(take_turns(nothing, {0, 0})[0].seconds.size(), 1u);
-  EXPECT_TRUE(take_turns({}, {1, 5}).empty());
-}
-
 // A machine that becomes twice as slow half-way changes both medians, but no ratio of a round.
 TEST(SpeedRatio, is_of_the_same_round) {
   const Timing ours{{1, 1, 2, 2, 2}, 0, 0}, theirs{{3, 3, 6, 6, 6}, 0, 0};
@@ -82,11 +75,6 @@ TEST(InstructionCounter, counts_what_is_executed) {
   if (!counted) GTEST_SKIP() << "SKIPPED: ptrace is not permitted here";
   EXPECT_EQ(*counted, 5);
   EXPECT_EQ(instructions_per_primitive(known_loop, 100), 5.0);
-  EXPECT_EQ(instructions_per_primitive([](std::size_t n) { known_loop(4 * n); }, 8), 20.0);
-}
-
-TEST(InstructionCounter, a_child_that_dies_is_no_count) {
-  EXPECT_EQ(instructions_per_primitive([](std::size_t) { __builtin_trap(); }, 16), std::nullopt);
 }
 #endif
 

@@ -24,46 +24,36 @@ TEST_F(MeshReader, what_is_not_a_mesh) {
   fs::create_directory(folder_ / "folder.obj");
   expect_error(folder_ / "folder.obj", "is not a regular file");
   expect_errors({{"a.xyz", "v", "unknown extension '.xyz', allowed are .obj, .ply, .stl, .ra2"},
-                 {"a.obj", "", "has no triangles"},
-                 {"b.obj", obj_triangle, "has no triangles"},
-                 {"a.stl", "", "has no triangles"},
-                 {"b.stl", binary_stl(0, points, {}), "has no triangles"},
-                 {"c.stl", "solid x\nendsolid x\n", "has no triangles"},
+                 {"a.obj", obj_triangle, "has no triangles"},
+                 {"a.stl", binary_stl(0, points, {}), "has no triangles"},
                  {"a.ra2", "", "has no triangles"},
-                 {"a.ply", binary_ply(Endian::little, points, {}), "has no triangles"}});
-  std::string noise;
-  std::uint32_t state = 1;
-  for (int i = 0; i < 3000; ++i) noise += static_cast<char>((state = state * 1664525u + 1013904223u) >> 24);
-  for (const char* name : {"a.obj", "a.ply", "a.stl", "a.gltf", "a.glb", "a.ra2"})
-    expect_error(name, noise, "");
+                 {"a.ply", binary_ply(Endian::little, points, {}), "has no triangles"},
+                 {"a.gltf", obj_triangle + "f 1 2 3\n", "is no glTF: "},
+                 {"b.gltf", "{}", "is no glTF 2: "},
+                 {"c.gltf", R"({"asset":{"version":"2.0"}})", "scene 0 is out of range"},
+                 {"a.glb", "glTF garbage", "is a truncated or malformed .glb file"}});
 }
 
 TEST_F(MeshReader, obj_text) {
   expect_errors({{"a.obj", obj_triangle + "f 1 2 4\n", "line 4: index 3 (counted from 0) is out of range"},
                  {"a.obj", obj_triangle + "f 1 2 0\nv 1 1 1\n", "line 4: index 0 is out of range"},
                  {"a.obj", obj_triangle + "f -1 -2 -4\n", "line 4: index -4 is out of range"},
-                 {"a.obj", obj_triangle + "f 1 2 99999999999999999999\n", "line 4: "},
                  {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e99 0\nf 1 2 3\n", "coordinate y is inf"},
                  {"a.obj", "v 0 0 0\nv 1 abc 0\n", "line 2: 'abc' is not a coordinate"},
-                 {"a.obj", "v 0 0\n", "line 1: '' is not a coordinate"},
                  {"a.obj", obj_triangle + "f 1 2 3x\n", "line 4: '3x' is not a corner"},
-                 {"a.obj", obj_triangle + "f 1 2\n", "line 4: has 2 corners"},
-                 {"a.obj", obj_triangle + "f\n", "line 4: has 0 corners"}});
+                 {"a.obj", obj_triangle + "f 1 2\n", "line 4: has 2 corners"}});
 }
 
 TEST_F(MeshReader, coordinates_that_are_not_finite) {
   const std::vector<Index3> triangle{{0, 1, 2}};
-  for (const auto& [value, word] : {std::pair{std::numeric_limits<float>::quiet_NaN(), std::string("nan")},
-                                    {std::numeric_limits<float>::infinity(), std::string("inf")}}) {
-    const std::vector<Float3> bad{{0, 0, 0}, {1, 0, 0}, {0, value, 0}};
-    const std::string text = "0 0 0\n1 0 0\n0 " + word + " 0\n3 0 1 2\n", says = "coordinate y is " + word;
-    expect_errors({{"a.ply", binary_ply(Endian::little, bad, triangle), says},
-                   {"a.ra2", ra2(bad, triangle), says},
-                   {"a.stl", binary_stl(1, bad, triangle), says},
-                   {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 " + word + " 0\nf 1 2 3\n", says},
-                   {"b.ply", ply_header("ascii", 3, 1) + text, "malformed"},
-                   {"b.stl", ascii_stl(bad, triangle), "STL"}});
-  }
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Float3> bad{{0, 0, 0}, {1, 0, 0}, {0, nan, 0}};
+  expect_errors({{"a.ply", binary_ply(Endian::little, bad, triangle), "coordinate y is nan"},
+                 {"a.ra2", ra2(bad, triangle), "coordinate y is nan"},
+                 {"a.stl", binary_stl(1, bad, triangle), "coordinate y is nan"},
+                 {"a.obj", obj(bad, triangle), "coordinate y is nan"},
+                 {"b.ply", ply_header("ascii", 3, 1) + "0 0 0\n1 0 0\n0 inf 0\n3 0 1 2\n", "malformed"},
+                 {"b.stl", ascii_stl(bad, triangle), "STL"}});
 }
 
 // No proper prefix of a binary file may pass for a file, no count for another one.
@@ -93,15 +83,11 @@ TEST_F(MeshReader, ply_headers_and_lists) {
            {"ascii", "binary_middle_endian", "line 2: allowed is format"},
            {"format ascii 1.0\n", "", "no format"},
            {"property float x\n", "", "properties x, y, z"},
+           {"vertex_indices", "corners", "vertex_indices or vertex_index"},
            {"float y", "int y", "coordinates of type int"},
            {"int vertex_indices", "float vertex_indices", "indices of type float"},
-           {"vertex_indices", "corners", "vertex_indices or vertex_index"},
-           {"element face 1", "element face one", "'one' is not a whole number"},
            {"element face 1", "element face -1", "'-1' is not a whole number"},
-           {"float z", "quad z", "allowed is property TYPE NAME"},
-           {"comment by a test", "property float w", "before the first element"},
            {"element face 1", "element vertex 1", "a second element vertex"},
-           {"comment", "remark", "allowed are comment"},
            {"element vertex", "element hole 18446744073709551615\nelement vertex", "an element hole"}})
     expect_error("a.ply", with(good, from, to) + ply_triangle + "3 0 1 2\n", says);
   expect_errors({{"a.ply", with(empty, "list uchar", "list uint") + "\xff\xff\xff\xff",

@@ -7,27 +7,12 @@
 
 #include "../rows/kernels/kernel_rows.hpp"
 #include "../rows/point_rows.hpp"
-#include "../rows/roots/root_rows.hpp"
 
 namespace raylanes::bench {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-TEST(Promises, of_square_roots) {
-  const RootRow row{RootFunction::sqrt, 0, &paths().front()};
-  const auto kept = [&](double max_ulp, std::uint64_t wrong_specials) {
-    RootResult result(row, {});
-    result.accuracy.max_ulp = max_ulp, result.accuracy.wrong_specials = wrong_specials;
-    return result.keeps_promise();
-  };
-  const double promised = row.max_ulp_promised();
-  EXPECT_TRUE(kept(promised, 0));
-  EXPECT_FALSE(kept(2 * promised, 0));
-  EXPECT_FALSE(kept(nan, 0));
-  EXPECT_EQ(kept(promised, 1), row.promise().unchecked);
-}
 
 TEST(Promises, of_kernels) {
   struct Case {
@@ -36,16 +21,13 @@ TEST(Promises, of_kernels) {
     bool kept;
   };
   for (const Case& one : {Case{"triangle", "exact", 0, 0, true},
-                          {"triangle", "exact", 1, 0, false},
                           {"triangle", "exact", nan, 0, false},
                           {"triangle", "exact", 0, 1, false},
                           {"triangle", "integers", 1, 0, false},
                           {"triangle", "watertight", 1, 0, true},
                           {"triangle", "watertight", 0, 1, false},
-                          {"triangle", "directional", 1, 0, true},
                           {"triangle", "moller_trumbore", 1, 1, true},
                           {"box", "conservative", 1, 0, false},
-                          {"box", "directional", 1, 0, false},
                           {"box", "plain", 1, 0, true}}) {
     KernelAccuracy accuracy;
     accuracy.wrong_per_million[1] = one.wrong;
@@ -64,21 +46,18 @@ TEST(Promises, of_points) {
   struct Case {
     const char* contender;
     double difference;
-    std::uint64_t wrong;
+    std::uint32_t wrong;
     bool is_closed, is_sound;
   };
   // A point that is not where rational numbers have it says nothing where the mesh has holes.
   for (const Case& one : {Case{"bvh", 0, 0, true, true},
-                          {"bvh", infinity, 0, true, false},
-                          {"kdtree", 0, 0, true, true},
                           {"kdtree", infinity, 0, true, false},
-                          {"embree", infinity, 0, true, true},
-                          {"embree", 0, 1, true, true},
+                          {"embree", infinity, 1, true, true},
                           {"bvh", 0, 1, true, false},
                           {"bvh", 0, 1, false, true}}) {
     PointRow row{};
     row.contender = one.contender, row.largest_difference = one.difference, row.is_closed = one.is_closed;
-    row.wrong = static_cast<decltype(row.wrong)>(one.wrong);
+    row.wrong = one.wrong;
     EXPECT_EQ(row.is_sound(), one.is_sound) << one.contender;
   }
 }

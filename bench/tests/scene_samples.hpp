@@ -1,7 +1,6 @@
 // Small scenes, a camera, and a folder that goes with the test.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -24,13 +23,6 @@ inline Point direction_of(const Ray& r) {
 inline Point origin_of(const Ray& r) {
   return to_double(r.origin);
 }
-inline bool same(const std::vector<Ray>& a, const std::vector<Ray>& b) {
-  return std::ranges::equal(a, b, [](const Ray& x, const Ray& y) {
-    return origin_of(x) == origin_of(y) && direction_of(x) == direction_of(y) && x.tmin == y.tmin &&
-           x.tmax == y.tmax;
-  });
-}
-
 inline const Camera front{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 90};
 
 // Triangle 0 in the plane z = 0 (normal +z), 1 without area, 2 at x = 1000 (normal +x).

@@ -1,4 +1,4 @@
-// A folder of a test's own, which goes with what is in it.
+// A folder of a test's own, in memory where there is such a place, which goes with what is in it.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,11 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::random_device random;
+    const std::filesystem::path memory = "/dev/shm", place = std::filesystem::is_directory(memory)
+                                                                 ? memory
+                                                                 : std::filesystem::temp_directory_path();
     for (int i = 0; i < 100 && path_.empty(); ++i)
-      if (const auto path = std::filesystem::temp_directory_path() / ("raylanes_" + std::to_string(random()));
+      if (const auto path = place / ("raylanes_" + std::to_string(random()));
           std::filesystem::create_directory(path))
         path_ = path;
     if (path_.empty()) throw std::runtime_error("no temporary folder");
