@@ -137,20 +137,24 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   });
 }
 
-// Without a triangle to skip they go as streams or packets.
-TEST(DoubleRays, large_batches_skip_a_triangle_each) {
+// With all triangles of both sides they go as streams or packets.
+TEST(DoubleRays, large_batches_skip_a_triangle_each_or_keep_to_a_side) {
   on_each_case([](const Known& known, const Path& path) {
     for (const std::vector<RayD>& rays :
          {aimed_rays(known.with.mesh, 5000, 78, 0.9), aimed_rays_from_points(known.with.mesh, 400, 100, 6)}) {
       std::vector<HitD> first(rays.size()), hits(rays.size());
       std::vector<std::uint8_t> occluded(rays.size());
       known.tree.closest(rays, first, {.path = &path});
-      known.tree.closest(rays, hits, {.path = &path, .skip = first});
-      known.tree.occluded(rays, occluded, {.path = &path, .skip = first});
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const HitD hit = known.tree.closest(rays[i], {.path = &path, .skip = first[i]});
-        ASSERT_TRUE(same_bytes(hits[i], hit)) << text_of(rays[i]);
-        ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(rays[i]);
+      for (TraceOptionsD options : {TraceOptionsD{.path = &path, .skip = first},
+                                    TraceOptionsD{.path = &path, .facing = Facing::back}}) {
+        known.tree.closest(rays, hits, options);
+        known.tree.occluded(rays, occluded, options);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          if (options.facing == Facing::any) options.skip = first[i];
+          const HitD hit = known.tree.closest(rays[i], options);
+          ASSERT_TRUE(same_bytes(hits[i], hit)) << text_of(rays[i]);
+          ASSERT_EQ(occluded[i], hit ? 1 : 0) << text_of(rays[i]);
+        }
       }
     }
   });
