@@ -11,56 +11,36 @@ namespace raylanes::testing {
 
 template <class Number>
 struct CallsOf;
-template <>
-struct CallsOf<float> {
-  using Handle = raylanes_bvh;
-  using Tree = Bvh;
-  using CCrossing = raylanes_crossing;
-  using CClosestPoint = raylanes_closest_point;
-  static constexpr auto create = raylanes_bvh_create;
-  static constexpr auto refit = raylanes_bvh_refit;
-  static constexpr auto destroy = raylanes_bvh_destroy;
-  static constexpr auto save = raylanes_bvh_save;
-  static constexpr auto save_file = raylanes_bvh_save_file;
-  static constexpr auto load = raylanes_bvh_load;
-  static constexpr auto load_file = raylanes_bvh_load_file;
-  static constexpr auto closest = raylanes_bvh_closest;
-  static constexpr auto occluded = raylanes_bvh_occluded;
-  static constexpr auto closest1 = raylanes_bvh_closest1;
-  static constexpr auto occluded1 = raylanes_bvh_occluded1;
-  static constexpr auto closest_crossing = raylanes_bvh_closest_crossing;
-  static constexpr auto all_hits = raylanes_bvh_all_hits;
-  static constexpr auto crossings = raylanes_bvh_crossings;
-  static constexpr auto locate = raylanes_bvh_locate;
-  static constexpr auto closest_points = raylanes_bvh_closest_points;
-  static constexpr auto signed_distances = raylanes_bvh_signed_distances;
-  static constexpr auto winding_numbers = raylanes_bvh_winding_numbers;
-};
-template <>
-struct CallsOf<double> {
-  using Handle = raylanes_bvhd;
-  using Tree = BvhD;
-  using CCrossing = raylanes_crossingd;
-  using CClosestPoint = raylanes_closest_pointd;
-  static constexpr auto create = raylanes_bvhd_create;
-  static constexpr auto refit = raylanes_bvhd_refit;
-  static constexpr auto destroy = raylanes_bvhd_destroy;
-  static constexpr auto save = raylanes_bvhd_save;
-  static constexpr auto save_file = raylanes_bvhd_save_file;
-  static constexpr auto load = raylanes_bvhd_load;
-  static constexpr auto load_file = raylanes_bvhd_load_file;
-  static constexpr auto closest = raylanes_bvhd_closest;
-  static constexpr auto occluded = raylanes_bvhd_occluded;
-  static constexpr auto closest1 = raylanes_bvhd_closest1;
-  static constexpr auto occluded1 = raylanes_bvhd_occluded1;
-  static constexpr auto closest_crossing = raylanes_bvhd_closest_crossing;
-  static constexpr auto all_hits = raylanes_bvhd_all_hits;
-  static constexpr auto crossings = raylanes_bvhd_crossings;
-  static constexpr auto locate = raylanes_bvhd_locate;
-  static constexpr auto closest_points = raylanes_bvhd_closest_points;
-  static constexpr auto signed_distances = raylanes_bvhd_signed_distances;
-  static constexpr auto winding_numbers = raylanes_bvhd_winding_numbers;
-};
+// Names of functions and types; for doubles they have a d.
+#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d)                               \
+  template <>                                                                    \
+  struct CallsOf<Number> {                                                       \
+    using Handle = raylanes_bvh##d;                                              \
+    using Tree = TreeOfNumber;                                                   \
+    using CCrossing = raylanes_crossing##d;                                      \
+    using CClosestPoint = raylanes_closest_point##d;                             \
+    static constexpr auto create = raylanes_bvh##d##_create;                     \
+    static constexpr auto refit = raylanes_bvh##d##_refit;                       \
+    static constexpr auto destroy = raylanes_bvh##d##_destroy;                   \
+    static constexpr auto save = raylanes_bvh##d##_save;                         \
+    static constexpr auto save_file = raylanes_bvh##d##_save_file;               \
+    static constexpr auto load = raylanes_bvh##d##_load;                         \
+    static constexpr auto load_file = raylanes_bvh##d##_load_file;               \
+    static constexpr auto closest = raylanes_bvh##d##_closest;                   \
+    static constexpr auto occluded = raylanes_bvh##d##_occluded;                 \
+    static constexpr auto closest1 = raylanes_bvh##d##_closest1;                 \
+    static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;               \
+    static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing; \
+    static constexpr auto all_hits = raylanes_bvh##d##_all_hits;                 \
+    static constexpr auto crossings = raylanes_bvh##d##_crossings;               \
+    static constexpr auto locate = raylanes_bvh##d##_locate;                     \
+    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;     \
+    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances; \
+    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;   \
+  }
+RAYLANES_CALLS_OF(float, Bvh, );
+RAYLANES_CALLS_OF(double, BvhD, d);
+#undef RAYLANES_CALLS_OF
 
 template <class Number>
 struct Destroy {
