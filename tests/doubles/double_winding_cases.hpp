@@ -14,10 +14,14 @@
 
 namespace raylanes::testing {
 
-// Points as moved() moves vertices.
-inline std::vector<Double3> moved_points(const std::vector<Float3>& points, double factor,
-                                         const Double3& offset) {
-  return moved(Mesh{points, {}}, factor, offset).vertices;
+// check(tree, path), as the trees of floats have it.
+template <class Check>
+void each_tree(const DoubleMesh& mesh, const Check& check) {
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  for (const Path* path : supported_paths()) {
+    SCOPED_TRACE(path->name);
+    check(tree, path);
+  }
 }
 // In a ball of 1.5 around the mesh of this size.
 inline std::vector<Double3> points_around(const DoubleMesh& mesh, std::size_t count, std::uint64_t seed) {

@@ -57,4 +57,28 @@ inline std::size_t expect_windings(const Mesh& mesh, const std::vector<Float3>& 
       expected, [](const SummedWinding& w) { return std::abs(w.number - std::round(w.number)) > 0.01L; }));
 }
 
+// Points are inside where their number is one half at least. Returns how many are.
+template <class Point>
+std::size_t expect_rule_of_inside(const auto& mesh, const auto& tree, const Path* path,
+                                  const std::vector<Point>& points) {
+  using T = typename Point::value_type;
+  std::vector<Location> locations(points.size());
+  std::vector<T> numbers(points.size()), distances(points.size());
+  tree.locate(points, locations, {.rule = InsideRule::winding, .path = path});
+  tree.winding_numbers(points, numbers, {.accuracy = 0, .path = path});
+  tree.signed_distances(points, distances, {.rule = InsideRule::winding, .path = path});
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Location expected = is_on(mesh, points[i]) ? Location::on
+                              : numbers[i] >= T{0.5} ? Location::inside
+                                                     : Location::outside;
+    // A number that is less than ½ may be ½ as a float.
+    EXPECT_TRUE((std::is_same_v<T, float> && numbers[i] == T{0.5}) || locations[i] == expected)
+        << "point " << i;
+    EXPECT_EQ(distances[i] < 0, locations[i] == Location::inside);
+    inside += locations[i] == Location::inside ? 1 : 0;
+  }
+  return inside;
+}
+
 }  // namespace raylanes::testing

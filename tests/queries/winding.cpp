@@ -1,16 +1,10 @@
-// Winding numbers: against solid angles of all triangles, and by what must hold exactly.
+// Winding numbers of floats: where boundaries are long or in many parts, near the rule's half, of threads and masks.
+#include "../../bench/support/oracles/winding_sum.hpp"
+#include "chord_meshes.hpp"
 #include "open_meshes.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-TEST(Winding, meshes_with_holes_of_any_size) {
-  const Mesh whole = ellipsoid(1, {0, 0, 0});
-  for (const double share : {0.02, 0.3, 0.9}) {
-    const Mesh mesh = without(whole, share, 81);
-    EXPECT_GT(expect_windings(mesh, points_around(mesh, by_level(200), 1.5f, 82)), 10u);
-  }
-}
 
 // One loop of many edges, flat or not, which is cut by chords.
 TEST(Winding, a_large_hole) {
@@ -54,11 +48,6 @@ TEST(Winding, faces_turned_over_copies_and_edges_of_many_triangles) {
   EXPECT_GT(expect_windings(copies, points_around(copies, by_level(150), 1.5f, 89)), 10u);
 }
 
-TEST(Winding, triangles_that_have_nothing_in_common) {
-  const Mesh soup = triangle_soup(200, 1.0f, 90);
-  EXPECT_GT(expect_windings(soup, points_around(soup, by_level(150), 2.0f, 91)), 10u);
-}
-
 // Rows of a grid share rays, which go through corners and along edges of the boundary.
 TEST(Winding, points_in_lines_and_rays_through_the_boundary) {
   Mesh open = cube(-1, 1);
@@ -100,82 +89,6 @@ TEST(Winding, far_from_zero_and_far_from_the_mesh) {
   expect_windings(mesh, points);
 }
 
-// As count_crossings() counts them for a ray anywhere: nested, turned over and overlapping shells.
-TEST(Winding, closed_meshes_have_whole_numbers) {
-  Mesh mesh = cube(-1, 1);
-  append(mesh, cube(-0.5f, 0.5f));
-  append(mesh, cube(0, 2));
-  append(mesh, turned_over(cube(-0.25f, 0.25f), 1.0, 1));
-  std::vector<Float3> points = points_around(mesh, by_level(500), 2.5f, 99);
-  std::erase_if(points, [&](const Float3& point) { return is_on(mesh, point); });
-  std::vector<Ray> rays;
-  for (const Float3& point : points) rays.push_back({point, 0.0f, {0.31f, -0.73f, 0.59f}});
-  std::vector<CrossingCount> counts(points.size());
-  Bvh(mesh).count_crossings(rays, counts);
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    std::vector<float> numbers(points.size());
-    tree.winding_numbers(points, numbers, {.path = path});
-    for (std::size_t i = 0; i < points.size(); ++i)
-      ASSERT_EQ(numbers[i], static_cast<float>(counts[i].winding)) << "point " << i;
-  });
-}
-
-// The mean of both sides on a triangle; whatever a point on an edge has lies between those around it.
-TEST(Winding, points_on_the_surface) {
-  const Mesh mesh = cube(-1, 1);
-  const std::vector<Float3> points = {{0.25f, 0.5f, 1}, {0.25f, 0.5f, -1}, {-1, 0.5f, 0.25f}, {0, 1, 0.5f},
-                                      {1, 1, 1},        {0, 0, 1},         {0, 1, 1}};
-  std::vector<float> numbers(points.size());
-  Bvh(mesh).winding_numbers(points, numbers);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(numbers[i], 0.5f);
-  for (std::size_t i = 4; i < points.size(); ++i) EXPECT_TRUE(numbers[i] >= 0 && numbers[i] <= 1) << i;
-}
-
-// Sheets so near to each other that t of a crossing rounds to zero, or is flushed: the point is on the first alone.
-TEST(Winding, sheets_behind_a_point_at_the_least_distances) {
-  constexpr float least = std::numeric_limits<float>::denorm_min();
-  Mesh mesh;
-  for (const float height : {0.0f, least, -1024 * least})
-    append(mesh, make_triangle({-8, -8, height}, {8, -8, height}, {0, 8, height}));
-  const std::vector<Float3> points = {{0, 0, 0}, {0.5f, -1, 0}, {0, 0, least}, {0, 0, -1024 * least}};
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    for (const FloatMode mode : float_modes) {
-      const FloatModeScope scope(mode);
-      std::vector<float> numbers(points.size());
-      tree.winding_numbers(points, numbers, {.path = path});
-      const std::vector<float> expected = {0, 0, -1, 1};
-      EXPECT_EQ(numbers, expected) << name_of(mode);
-    }
-  });
-}
-
-std::size_t expect_rule_of_inside(const Mesh& mesh, const std::vector<Float3>& points) {
-  std::size_t inside = 0;
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    std::vector<Location> locations(points.size());
-    std::vector<float> numbers(points.size()), distances(points.size());
-    tree.locate(points, locations, {.rule = InsideRule::winding, .path = path});
-    tree.winding_numbers(points, numbers, {.accuracy = 0, .path = path});
-    tree.signed_distances(points, distances, {.rule = InsideRule::winding, .path = path});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Location expected = is_on(mesh, points[i]) ? Location::on
-                                : numbers[i] >= 0.5f   ? Location::inside
-                                                       : Location::outside;
-      // A number that is less than ½ may be ½ as a float.
-      EXPECT_TRUE(numbers[i] == 0.5f || locations[i] == expected) << "point " << i;
-      EXPECT_EQ(distances[i] < 0, locations[i] == Location::inside);
-      inside += locations[i] == Location::inside ? 1 : 0;
-    }
-  });
-  return inside;
-}
-
-TEST(Winding, the_rule_of_inside_by_half) {
-  const Mesh mesh = without(ellipsoid(1, {0, 0, 0}), 0.15, 101);
-  const std::vector<Float3> points = points_around(mesh, by_level(600), 1.5f, 102);
-  EXPECT_GT(expect_rule_of_inside(mesh, points), points.size() / 4);
-}
-
 // In the mouths of tubes numbers come near ½, to which the far ends of all tubes add a little.
 TEST(Winding, the_rule_of_inside_near_half) {
   const Mesh tubes = row_of_tubes(0, 12);
@@ -187,8 +100,9 @@ TEST(Winding, the_rule_of_inside_near_half) {
     point[1] += 2.5f * static_cast<float>(random.integer(0, 5));
     points.push_back(point);
   }
-  const std::size_t inside = expect_rule_of_inside(tubes, points);
-  EXPECT_GT(inside, points.size() / 4);
+  each_tree(tubes, [&](const auto& tree, const Path* path) {
+    EXPECT_GT(expect_rule_of_inside(tubes, tree, path, points), points.size() / 20);
+  });
 }
 
 TEST(Winding, threads_masks_and_strides) {
@@ -216,46 +130,41 @@ TEST(Winding, threads_masks_and_strides) {
   }
 }
 
-TEST(Winding, follows_a_mesh_that_is_refitted) {
-  Mesh mesh = without(ellipsoid(1, {0, 0, 0}), 0.1, 107);
-  const std::vector<Float3> points = points_around(mesh, 300, 1.5f, 108);
-  std::vector<float> refitted(points.size()), built(points.size());
-  Bvh bvh(mesh);
-  bvh.winding_numbers(points, refitted);
-  for (Float3& vertex : mesh.vertices) vertex = {1.5f * vertex[0], vertex[1] - 0.25f, 0.75f * vertex[2]};
-  bvh.refit(mesh.vertices, mesh.triangles);
-  bvh.winding_numbers(points, refitted);
-  Bvh moved = std::move(bvh);
-  moved.winding_numbers(points, refitted);
-  Bvh(mesh).winding_numbers(points, built);
-  EXPECT_TRUE(same_bytes(refitted, built));
+// One by one they have the rays to the nearest side; as a grid those along x.
+TEST(Winding, the_plane_of_a_flat_hole_has_one_half) {
+  const HoledCube cube(2, 0, 1);
+  std::vector<Float3> grid;
+  for (int y = -10; y <= 10; ++y)
+    for (int x = -10; x <= 10; ++x) grid.push_back({static_cast<float>(x), static_cast<float>(y), 24});
+  each_tree(cube.mesh, [&](const auto& tree, const Path* path) {
+    std::vector<float> numbers(grid.size());
+    tree.winding_numbers(grid, numbers, {.path = path});
+    float alone = 0;
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      tree.winding_numbers(std::span(grid).subspan(i, 1), std::span(&alone, 1), {.path = path});
+      wrong += std::abs(numbers[i] - 0.5f) > 1e-6f || std::abs(alone - 0.5f) > 1e-6f ? 1 : 0;
+    }
+    EXPECT_EQ(wrong, 0u);
+  });
 }
 
-TEST(Winding, no_triangles_no_points_and_points_that_are_not_finite) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
-                  infinity = std::numeric_limits<float>::infinity();
-  const std::vector<Float3> points = {{nan, 0, 0}, {0, infinity, 0}, {0, 0, -infinity}, {0, 0, 0}};
-  std::vector<float> numbers(4, 9.0f);
-  Bvh().winding_numbers(points, numbers);
-  EXPECT_EQ(numbers, std::vector<float>(4, 0.0f));
-  Bvh(cube(-1, 1)).winding_numbers(points, numbers);
-  EXPECT_EQ(numbers, (std::vector<float>{0, 0, 0, 1}));
-  Bvh(without(cube(-1, 1), 0.3, 109)).winding_numbers(points, numbers);
-  EXPECT_EQ(numbers[0] + numbers[1] + numbers[2], 0.0f);
-  Bvh(cube(-1, 1)).winding_numbers(std::vector<Float3>(), {});
-}
-
-TEST(Winding, options_that_are_refused) {
-  const Bvh bvh(cube(-1, 1));
-  const std::vector<Float3> points(3);
-  std::vector<float> numbers(3), few(2);
-  EXPECT_THROW(bvh.winding_numbers(points, few), std::invalid_argument);
-  for (const double accuracy : {-1e-9, -1.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW(bvh.winding_numbers(points, numbers, {.accuracy = accuracy}), std::invalid_argument);
-  EXPECT_THROW(bvh.winding_numbers(points, numbers, {.threads = -1}), std::invalid_argument);
-  EXPECT_THROW(bvh.winding_numbers({nullptr, 3}, numbers), std::invalid_argument);
-  bvh.winding_numbers(points, numbers, {.accuracy = std::numeric_limits<double>::infinity()});
-  EXPECT_EQ(numbers, std::vector<float>(3, 1.0f));
+// The first call of a tree makes its boundary on the threads of the call: in parts that are joined in their order.
+TEST(Winding, a_boundary_made_by_threads) {
+  const Mesh mesh = triangle_soup(by_level(6000), 0.1f, 117);
+  Random random(118);
+  std::vector<Float3> points;
+  for (int i = 0; i < 60; ++i) points.push_back(random.point(1.5f));
+  std::vector<float> one(points.size()), many(points.size());
+  Bvh(mesh).winding_numbers(points, one, {.threads = 1});
+  for (const int threads : {0, 3}) {
+    Bvh(mesh).winding_numbers(points, many, {.threads = threads});
+    EXPECT_EQ(one, many) << threads;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const oracle::WindingSum sum = oracle::winding_sum(mesh.vertices, mesh.triangles, points[i]);
+    EXPECT_NEAR(static_cast<double>(one[i]), sum.number, 2e-5 + sum.error) << i;
+  }
 }
 
 }  // namespace
