@@ -3,6 +3,7 @@
 
 #include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../support/filtered.hpp"
 #include "../support/meshes.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
@@ -77,25 +78,12 @@ TEST(DoubleLists, of_one_hit_take_the_lower_index_of_equal_t) {
   EXPECT_EQ(list[0][0].primitive, 0u);
 }
 
-struct ColumnsOfRays {
-  std::vector<double> number[8];
-  RayArraysD arrays;
-
-  explicit ColumnsOfRays(const std::vector<RayD>& rays) {
-    for (const auto& [o, tmin, d, tmax] : rays) {
-      const double numbers[] = {o[0], o[1], o[2], d[0], d[1], d[2], tmin, tmax};
-      for (std::size_t k = 0; k < 8; ++k) number[k].push_back(numbers[k]);
-    }
-    const auto at = [&](std::size_t k) { return number[k].data(); };
-    arrays = {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), rays.size()};
-  }
-};
-
 TEST(DoubleLists, rays_as_an_array_for_each_number) {
   const DoubleMesh mesh = moved(double_fan(40, 0.3f), 0.7, {5e6, 0.2, 0.3});
   const BvhD tree(mesh.vertices, mesh.triangles);
   const std::vector<RayD> rays = aimed_rays(mesh, 3000, 7);
-  const ColumnsOfRays columns(rays);
+  const RayColumns columns(rays);
+  const RayArraysD arrays = columns.view();
   Random random(3);
   std::vector<std::vector<std::uint8_t>> masks = masks_for(rays.size(), random);
   masks.emplace_back();  // all
@@ -109,17 +97,16 @@ TEST(DoubleLists, rays_as_an_array_for_each_number) {
       std::vector<CrossingCount> counts[2];
       for (int i = 0; i < 2; ++i)
         hits[i].resize(rays.size()), occluded[i].resize(rays.size()), counts[i].resize(rays.size());
-      tree.closest(rays, hits[0], options), tree.closest(columns.arrays, hits[1], options);
+      tree.closest(rays, hits[0], options), tree.closest(arrays, hits[1], options);
       EXPECT_TRUE(same_bytes(hits[0], hits[1]));
-      tree.occluded(rays, occluded[0], options), tree.occluded(columns.arrays, occluded[1], options);
+      tree.occluded(rays, occluded[0], options), tree.occluded(arrays, occluded[1], options);
       EXPECT_EQ(occluded[0], occluded[1]);
       tree.count_crossings(rays, counts[0], of_lists);
-      tree.count_crossings(columns.arrays, counts[1], of_lists);
+      tree.count_crossings(arrays, counts[1], of_lists);
       EXPECT_EQ(counts[0], counts[1]);
-      EXPECT_TRUE(
-          same_bytes(tree.all_hits(columns.arrays, of_lists).items, tree.all_hits(rays, of_lists).items));
-      EXPECT_EQ(tree.crossings(columns.arrays, of_lists).items, tree.crossings(rays, of_lists).items);
-      EXPECT_EQ(tree.crossings(columns.arrays, of_lists).offsets, tree.crossings(rays, of_lists).offsets);
+      EXPECT_TRUE(same_bytes(tree.all_hits(arrays, of_lists).items, tree.all_hits(rays, of_lists).items));
+      EXPECT_EQ(tree.crossings(arrays, of_lists).items, tree.crossings(rays, of_lists).items);
+      EXPECT_EQ(tree.crossings(arrays, of_lists).offsets, tree.crossings(rays, of_lists).offsets);
     }
 }
 

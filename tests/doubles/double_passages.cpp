@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../oracles/passage_oracle.hpp"
-#include "../support/same_bytes.hpp"
+#include "../oracles/peeled.hpp"
 #include "../support/supported_paths.hpp"
 #include "double_cases.hpp"
 
@@ -60,24 +60,7 @@ void expect_passages(const KnownRays& known, Facing facing, bool skips) {
     for (const int threads : {1, 2}) {
       TraceOptionsD options{.path = path, .threads = threads, .facing = facing};
       if (skips) options.skip = known.skip;
-      std::vector<HitD> hits(rays.size());
-      known.tree.closest_crossing(rays, hits, options);
-      bool some = true;
-      for (std::size_t layer = 0; some; ++layer) {
-        some = false;
-        for (std::size_t i = 0; i < hits.size(); ++i) {
-          const HitD wanted = layer < expected[i].size() ? expected[i][layer] : HitD();
-          ASSERT_TRUE(same_bytes(hits[i], wanted)) << known.of.name << ", ray " << i << ", layer " << layer;
-          some = some || hits[i];
-          if (layer > 0 || threads > 1) continue;
-          TraceOptionsD alone{.path = path, .facing = facing};
-          if (skips) alone.skip = known.skip[i];
-          ASSERT_TRUE(same_bytes(known.tree.closest_crossing(rays[i], alone), wanted))
-              << known.of.name << ", ray " << i;
-        }
-        options.after = hits;
-        known.tree.closest_crossing(rays, hits, options);
-      }
+      expect_peeled(rays, expected, options, passages_of(known.tree, rays, known.skip));
     }
 }
 

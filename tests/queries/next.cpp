@@ -1,4 +1,5 @@
 // Next hits, and filters made of them: asked for again and again they are all hits, in order.
+#include "../oracles/peeled.hpp"
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
@@ -7,55 +8,41 @@ namespace raylanes::testing {
 namespace {
 
 // Peels all hits of all rays off by next hits, and compares with the lists of rational numbers.
-void expect_peeled(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
+void expect_layers(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
   std::vector<std::vector<Hit>> expected;
   for (const Ray& ray : rays) expected.push_back(oracle_hits(mesh, ray));
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     for (const FloatMode mode : float_modes) {
       if (mode == FloatMode::flush && !also_flushed) continue;
       const FloatModeScope scope(mode);
-      std::vector<Hit> hits(rays.size());
-      tree.closest(rays, hits, {.path = path});
-      std::size_t found = 0;
-      for (std::size_t layer = 0;; ++layer) {
-        bool some = false;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          const Hit wanted = layer < expected[i].size() ? expected[i][layer] : Hit();
-          ASSERT_TRUE(same_bytes(wanted, hits[i])) << name_of(mode) << ", ray " << i << ", layer " << layer;
-          some = some || hits[i];
-          found += hits[i] ? 1 : 0;
-        }
-        if (!some) break;
-        // In place, in an array of its own, and one by one.
-        std::vector<Hit> other(rays.size());
-        tree.closest(rays, other, {.mode = TraversalMode::stream, .path = path, .threads = 2, .after = hits});
-        const Hit alone = tree.closest(rays[0], {.path = path, .after = std::span(hits).first(1)});
-        tree.closest(rays, hits, {.path = path, .after = hits});
-        ASSERT_TRUE(same_bytes(other, hits));
-        ASSERT_TRUE(same_bytes(alone, hits[0]));
+      for (const int threads : {1, 2}) {
+        const TraceOptions options{.mode = threads == 1 ? TraversalMode::automatic : TraversalMode::stream,
+                                   .path = path,
+                                   .threads = threads};
+        const auto closest = [&](auto&&... call) { return tree.closest(call...); };
+        EXPECT_GT(expect_peeled(rays, expected, options, closest), 0u) << name_of(mode);
       }
-      EXPECT_GT(found, 0u);
     }
   });
 }
 
 TEST(NextHit, peels_random_meshes) {
   const Mesh mesh = triangle_soup(by_level(200), 0.5f, 61);
-  expect_peeled(mesh, aimed_rays(mesh, by_level(200), 2, 62));
+  expect_layers(mesh, aimed_rays(mesh, by_level(200), 2, 62));
 }
 
 TEST(NextHit, peels_lattices_coincident_triangles_and_edges) {
-  expect_peeled(lattice_walls(2), lattice_rays(2, by_level(300), 63));
+  expect_layers(lattice_walls(2), lattice_rays(2, by_level(300), 63));
   Mesh mesh = double_fan(30, 0.25f);
   append(mesh, mesh);
   append(mesh, cube(-1, 1));
-  expect_peeled(mesh, aimed_rays(mesh, by_level(200), 3, 64));
+  expect_layers(mesh, aimed_rays(mesh, by_level(200), 3, 64));
 }
 
 TEST(NextHit, peels_at_scales_of_1e_30_and_1e30) {
   for (const float scaling : {1e-30f, 1e12f, 1e30f}) {
     const ScaledScene scene(60, 100, 65, scaling);
-    expect_peeled(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
+    expect_layers(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
   }
 }
 
@@ -72,7 +59,7 @@ TEST(NextHit, peels_layers_that_round_to_one_t) {
   for (std::size_t i = 0; i < by_level(120); ++i)
     rays.push_back(make_ray({random.number(-1, 1), random.number(-1, 1), -1},
                             {random.number(-1, 1), random.number(-1, 1), random.number(0.5f, 2)}));
-  expect_peeled(mesh, rays);
+  expect_layers(mesh, rays);
 }
 
 TEST(NextHit, behind_odd_hits) {

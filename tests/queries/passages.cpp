@@ -1,5 +1,7 @@
 // The next passage of rays through a surface: each once at edges and corners, and nowhere where rays only touch.
 #include "../oracles/passage_oracle.hpp"
+#include "../oracles/peeled.hpp"
+#include "../support/filtered.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -34,37 +36,6 @@ struct PassingRays {
   }
 };
 
-// All passages of all rays, one behind the other, in every mode; and of rays in calls of their own.
-template <class Tree>
-std::size_t expect_in_order(const Tree& tree, const PassingRays& of, TraceOptions options,
-                            const std::vector<std::vector<Hit>>& expected) {
-  std::vector<Hit> hits(of.rays.size());
-  tree.closest_crossing(of.rays, hits, options);
-  std::size_t found = 0;
-  for (std::size_t layer = 0;; ++layer) {
-    bool some = false;
-    for (std::size_t i = 0; i < of.rays.size(); ++i) {
-      const Hit wanted = layer < expected[i].size() ? expected[i][layer] : Hit();
-      EXPECT_TRUE(same_bytes(wanted, hits[i]))
-          << "ray " << i << ", layer " << layer << ": t " << hits[i].t << ", not " << wanted.t;
-      if (!same_bytes(wanted, hits[i])) return found;
-      some = some || hits[i];
-      found += hits[i] ? 1 : 0;
-    }
-    if (!some) return found;
-    for (std::size_t i = layer; i < of.rays.size(); i += 17) {
-      TraceOptions alone = options;
-      if (options.skip.first != nullptr) alone.skip = of.skip[i];
-      if (layer > 0) alone.after = HitView(&hits[i], 1);
-      const std::size_t behind = layer == 0 ? 0 : layer + 1;
-      const Hit wanted = behind < expected[i].size() ? expected[i][behind] : Hit();
-      EXPECT_TRUE(same_bytes(tree.closest_crossing(of.rays[i], alone), wanted)) << i << ", alone";
-    }
-    options.after = hits;
-    tree.closest_crossing(of.rays, hits, options);
-  }
-}
-
 void expect_passages(const PassingRays& of, bool also_flushed = true) {
   std::size_t found = 0;
   for (const Facing facing : {Facing::any, Facing::front, Facing::back})
@@ -79,7 +50,7 @@ void expect_passages(const PassingRays& of, bool also_flushed = true) {
             TraceOptions options{.mode = how, .path = path, .facing = facing};
             options.threads = how == TraversalMode::stream ? 2 : 1;
             if (skips) options.skip = of.skip;
-            found += expect_in_order(tree, of, options, expected);
+            found += expect_peeled(of.rays, expected, options, passages_of(tree, of.rays, of.skip));
           }
         }
       });
@@ -237,15 +208,7 @@ TEST(Passages, of_arrays_strides_and_active_rays) {
   const std::vector<Ray> rays = aimed_rays(mesh, 500, 3, 208);
   std::vector<Hit> hits(rays.size()), in_place(rays.size()), of_arrays(rays.size()), some(rays.size());
   bvh.closest_crossing(rays, hits);
-  std::vector<float> numbers[8];
-  for (const Ray& ray : rays) {
-    const float of_ray[] = {ray.origin[0],    ray.origin[1],    ray.origin[2], ray.direction[0],
-                            ray.direction[1], ray.direction[2], ray.tmin,      ray.tmax};
-    for (std::size_t k = 0; k < 8; ++k) numbers[k].push_back(of_ray[k]);
-  }
-  const auto at = [&](std::size_t k) { return numbers[k].data(); };
-  const RayArrays arrays{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), rays.size()};
-  bvh.closest_crossing(arrays, of_arrays);
+  bvh.closest_crossing(RayColumns(rays).view(), of_arrays);
   EXPECT_TRUE(same_bytes(hits, of_arrays));
   const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0x6d);
   bvh.closest_crossing(rays, some, {.active = active.data()});
