@@ -1,11 +1,8 @@
-// Calls of closest points and signed distances of doubles: the most distance, batches as they lie, signs, refusals.
+// Calls of closest points and signed distances of doubles: the most distance, signs, refusals.
 #include <gmpxx.h>
 
-#include <cstring>
 #include <stdexcept>
 
-#include "../support/guarded_array.hpp"
-#include "../support/message_of.hpp"
 #include "double_point_cases.hpp"
 
 namespace raylanes::testing {
@@ -48,44 +45,6 @@ TEST(DoubleClosestPoints, keep_to_the_most_distance) {
     for (const double most : {0.0, 0.25 * factor, largest})
       expect_everywhere(mesh, points, one_by_one(mesh, points, most), "most", most);
     if (HasFatalFailure()) return;
-  }
-}
-
-TEST(DoubleClosestPoints, take_batches_as_they_lie) {
-  struct [[gnu::packed]] Record {
-    char name[3];
-    Double3 at;
-  };
-  const DoubleMesh mesh = moved(ellipsoid(2, {0, 0, 0}), 1e-3, {5e6, -4e6, 1e5});
-  const BvhD tree(mesh.vertices, mesh.triangles);
-  Random random(33);
-  for (const std::size_t n : {0u, 1u, 7u, 33u, 300u}) {
-    GuardedArray<Record> records(n, Place::before_guard);
-    GuardedArray<ClosestPointD> found(n, Place::before_guard);
-    const std::vector<Double3> all = points_for(mesh, 900, 34),
-                               points(all.begin(), all.begin() + std::ptrdiff_t(n));
-    for (std::size_t i = 0; i < n; ++i) std::memcpy(&records[i].at, &points[i], sizeof(Double3));
-    const std::vector<ClosestPointD> expected = closest_of(tree, points);
-    const VertexViewD view(n == 0 ? nullptr : reinterpret_cast<const std::byte*>(&records[0]) + 3, n,
-                           sizeof(Record));
-    for (const auto& mask : masks_for(n, random)) {
-      ClosestPointD untouched;
-      untouched.unused = 7;
-      for (std::size_t i = 0; i < n; ++i) found[i] = untouched;
-      tree.closest_points(view, {found.data(), n}, {.threads = 2, .active = mask.data()});
-      std::vector<double> distances(n, 7.0);
-      tree.signed_distances(view, distances, {.active = mask.data()});
-      for (std::size_t i = 0; i < n; ++i) {
-        const bool active = (mask[i / 8] >> i % 8 & 1) != 0;
-        ASSERT_TRUE(same_bytes(found[i], active ? expected[i] : untouched));
-        if (active) {
-          ASSERT_TRUE(distances[i] == 0 || std::abs(distances[i]) == expected[i].distance);
-        } else {
-          ASSERT_EQ(distances[i], 7.0);
-        }
-      }
-      ASSERT_TRUE(found.is_intact());
-    }
   }
 }
 
@@ -134,23 +93,6 @@ TEST(DoubleClosestPoints, have_the_sign_of_each_rule) {
     tree.signed_distances(points, others, {.rule = rule});
     EXPECT_EQ(first, others);
   }
-}
-
-TEST(DoubleClosestPoints, refuse_what_does_not_fit) {
-  const DoubleMesh mesh = moved(cube(-1, 1), 1, {0, 0, 0});
-  const BvhD tree(mesh.vertices, mesh.triangles);
-  const std::vector<Double3> points(3);
-  std::vector<ClosestPointD> found(2);
-  std::vector<double> distances(3);
-  EXPECT_NE(message_of([&] { tree.closest_points(points, found); }).find("closest has 2"), std::string::npos);
-  EXPECT_NE(message_of([&] { tree.closest_points(VertexViewD(nullptr, 2), found); }).find("nothing"),
-            std::string::npos);
-  EXPECT_NE(message_of([&] { tree.closest_point({}, {.threads = -1}); }).find("-1 threads"),
-            std::string::npos);
-  EXPECT_THROW(tree.signed_distances(points, std::span(distances).first(2)), std::invalid_argument);
-  EXPECT_THROW(tree.signed_distances(points, distances, {.threads = -1}), std::invalid_argument);
-  BvhD().signed_distances(points, distances);
-  EXPECT_EQ(distances, std::vector<double>(3, infinite));
 }
 
 }  // namespace

@@ -3,51 +3,107 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include <raylanes/raylanes.hpp>
 
 #include "../../accel/queries/closest_points.hpp"
+#include "../../dispatch/table/numbers.hpp"
+#include "../doubles/double_cases.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/level.hpp"
+#include "../support/message_of.hpp"
 #include "../support/supported_paths.hpp"
 #include "point_tree_cases.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-// In pieces and orders of their own, strided, masked, beside guards.
-TEST(ClosestPointsOfTrees, take_batches_as_they_lie) {
-  struct Record {
-    float weight;
-    Float3 at;
+template <class T>
+class PointsOf : public ::testing::Test {
+ protected:
+  static auto tree_of(const Mesh& mesh, double factor, const Double3& offset) {
+    if constexpr (std::is_same_v<T, float>) {
+      return Bvh(mesh);
+    } else {
+      const DoubleMesh far = moved(mesh, factor, offset);
+      return BvhD(far.vertices, far.triangles);
+    }
+  }
+};
+using Numbers = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(PointsOf, Numbers);
+
+// In pieces and orders of their own, strided, masked, beside guards: closest points, and distances with a sign.
+TYPED_TEST(PointsOf, any_batch_have_the_bytes_of_one_by_one) {
+  using Point = PointOf<TypeParam>;
+  struct [[gnu::packed]] Record {
+    char name[3];
+    Point at;
   };
+  const auto tree = this->tree_of(ellipsoid(2, {0, 0, 0}), 1e-3, {5e6, -4e6, 1e5});
   Random random(2725);
-  const Mesh mesh = triangle_soup(200, 0.2f, 2726);
-  const Bvh bvh(mesh);
-  for (const std::size_t n : {0u, 1u, 7u, 31u, 32u, 33u, 200u, 3000u}) {
-    GuardedArray<Record> records(n, Place::after_guard);
-    GuardedArray<ClosestPoint> found(n, Place::before_guard);
-    std::vector<ClosestPoint> expected(found.data(), found.data() + n);
+  for (const std::size_t n : {0u, 1u, 7u, 31u, 32u, 33u, 200u, 3000u, (1u << 17) + 33u}) {
+    GuardedArray<Record> records(n, Place::before_guard);
+    GuardedArray<ClosestPointOf<TypeParam>> found(n, Place::before_guard);
+    GuardedArray<TypeParam> distances(n, Place::before_guard);
+    std::vector<ClosestPointOf<TypeParam>> expected(found.data(), found.data() + n);
+    std::vector<TypeParam> expected_distances(distances.data(), distances.data() + n);
     std::vector<std::uint8_t> mask((n + 7) / 8);
     for (std::size_t i = 0; i < n; ++i) {
-      records[i] = {1, random.point(2)};
+      Point point;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double share = random.real(-0.25, 1.25);
+        point[k] = static_cast<TypeParam>((1 - share) * tree.bounds().lo[k] + share * tree.bounds().hi[k]);
+      }
+      std::memcpy(&records[i].at, &point, sizeof point);
       if (!random.chance(0.7)) continue;
       mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
-      expected[i] = bvh.closest_point(records[i].at);
+      expected[i] = tree.closest_point(point);
+      tree.signed_distances(std::span(&point, 1), std::span(&expected_distances[i], 1));
     }
     GuardedArray<std::uint8_t> active(mask.size(), Place::before_guard);
     active.fill(mask);
-    const VertexView points(n == 0 ? nullptr : &records[0].at, n, sizeof(Record));
+    const VertexRecords<TypeParam> points(
+        n == 0 ? nullptr : reinterpret_cast<const std::byte*>(&records[0]) + 3, n, sizeof(Record));
     for (const Path* path : paths_with_own_queries())
       for (const int threads : {1, 2}) {
-        bvh.closest_points(points, {found.data(), n},
-                           {.path = path, .threads = threads, .active = active.data()});
-        ASSERT_TRUE(found.holds(expected)) << n;
-        ASSERT_TRUE(found.is_intact());
+        tree.closest_points(points, {found.data(), n},
+                            {.path = path, .threads = threads, .active = active.data()});
+        tree.signed_distances(points, {distances.data(), n},
+                              {.path = path, .threads = threads, .active = active.data()});
+        ASSERT_TRUE(found.holds(expected) && distances.holds(expected_distances)) << n;
+        ASSERT_TRUE(found.is_intact() && distances.is_intact());
       }
   }
+}
+
+TYPED_TEST(PointsOf, what_does_not_fit_is_refused) {
+  using T = TypeParam;
+  const auto tree = this->tree_of(cube(-1, 1), 1, {0, 0, 0});
+  const std::vector<PointOf<T>> points(3);
+  std::vector<ClosestPointOf<T>> found(2);
+  std::vector<T> distances(3);
+  const auto expect_refused = [](const char* words, const auto& call) {
+    EXPECT_NE(message_of(call).find(words), std::string::npos);
+  };
+  const VertexRecords<T> nowhere(nullptr, 2);
+  expect_refused("closest has 2", [&] { tree.closest_points(points, found); });
+  expect_refused("nothing", [&] { tree.closest_points(nowhere, found); });
+  expect_refused("-1 threads", [&] { tree.closest_point({}, {.threads = -1}); });
+  expect_refused("2", [&] { tree.signed_distances(points, std::span(distances).first(2)); });
+  expect_refused("nothing", [&] { tree.signed_distances(nowhere, std::span(distances).first(2)); });
+  expect_refused("-1 threads", [&] { tree.signed_distances(points, distances, {.threads = -1}); });
+  expect_refused("rule", [&] {
+    tree.signed_distances(points, distances, {.rule = InsideRule(inside_rule_names.size())});
+  });
+  std::remove_cvref_t<decltype(tree)>().signed_distances(points, distances);
+  EXPECT_EQ(distances, std::vector<T>(3, std::numeric_limits<T>::infinity()));
 }
 
 // Around a cube: so far is easily said. With reports and without.

@@ -201,17 +201,6 @@ TEST(ClosestPointsOfTrees, are_those_of_calls_with_one_point) {
   }
 }
 
-TEST(ClosestPointsOfTrees, refuse_what_does_not_fit) {
-  const Bvh bvh(triangle_soup(10, 0.2f, 2727));
-  std::vector<Float3> points(3);
-  std::vector<ClosestPoint> found(2);
-  EXPECT_NE(message_of([&] { bvh.closest_points(points, found); }).find("closest has 2"), std::string::npos);
-  EXPECT_NE(message_of([&] { bvh.closest_points(VertexView(nullptr, 2), found); }).find("nothing"),
-            std::string::npos);
-  EXPECT_NE(message_of([&] { bvh.closest_point({}, {.threads = -1}); }).find("-1 threads"),
-            std::string::npos);
-}
-
 TEST(ClosestPointsOfTrees, refuse_paths_of_other_machines) {
   const Bvh bvh(triangle_soup(10, 0.2f, 2737));
   expect_foreign_path_refused<ClosestPointOptions>(
