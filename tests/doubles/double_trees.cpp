@@ -13,31 +13,6 @@
 namespace raylanes::testing {
 namespace {
 
-TEST(DoubleTrees, report_what_they_are) {
-  DoubleMesh mesh = moved(double_fan(600, 0.3f), 0.7, {5e6, 0.2, -0.3});
-  const std::size_t triangles = mesh.triangles.size();
-  mesh.triangles.push_back({0, 1, 1});
-  for (const bool optimize : {false, true}) {
-    const BvhD tree(mesh.vertices, mesh.triangles, {.builder = TreeBuilder::sweep_sah, .optimize = optimize});
-    const TreeReport report = tree.report();
-    EXPECT_EQ(report.builder, TreeBuilder::sweep_sah);
-    EXPECT_EQ(report.optimized, optimize);
-    EXPECT_EQ(report.optimize_seconds > 0, optimize);
-    EXPECT_EQ(report.triangles, triangles);
-    EXPECT_EQ(report.left_out, 1u);
-    EXPECT_EQ(report.references, triangles);
-    EXPECT_EQ(report.nodes, tree.node_count());
-    EXPECT_EQ(report.leaves, tree.leaf_count());
-    EXPECT_EQ(report.bytes, tree.bytes());
-    EXPECT_TRUE(report.depth >= 2 && report.depth <= max_tree_depth) << report.depth;
-    EXPECT_GT(report.sah_cost, 1.9);
-    EXPECT_TRUE(report.boxes_seconds > 0 && report.tree_seconds > 0 && report.layout_seconds > 0);
-    EXPECT_GE(report.peak_bytes, report.bytes);
-    EXPECT_EQ(report.choice, "");
-  }
-  EXPECT_EQ(BvhD().report().nodes, 0u);
-}
-
 // Triangles of floats have the same boxes in both trees but for the frame, so the same tree is made.
 TEST(DoubleTrees, cost_what_trees_of_floats_cost) {
   const Mesh mesh = triangle_soup(3000, 0.1f, 4);
@@ -75,27 +50,6 @@ TEST(DoubleTrees, decay_as_they_are_refitted_and_stay_as_they_were) {
   EXPECT_THROW(tree.refitted(mesh.vertices, IndexView()), std::invalid_argument);
   EXPECT_EQ(BvhD().refitted(VertexViewD(), IndexView()).decay(), 1.0);
   EXPECT_EQ(BvhD().sah_cost(), 0.0);
-}
-
-// So many triangles that builds and refits are shared out.
-TEST(DoubleTrees, are_the_same_for_any_number_of_threads) {
-  const Mesh soup = triangle_soup(40000, 0.02f, 71);
-  const DoubleMesh mesh = moved(soup, 0.1, {5e6, 3, -7}), then = moved(soup, -0.3, {0.1, 4e5, 1});
-  const std::vector<RayD> rays = aimed_rays(then, 500, 6);
-  BvhD alone(mesh.vertices, mesh.triangles);
-  alone.refit(then.vertices, then.triangles);
-  const BvhD built(then.vertices, then.triangles, {.threads = 2});
-  std::vector<HitD> expected(rays.size()), hits(rays.size());
-  built.closest(rays, expected);
-  EXPECT_GT(std::ranges::count_if(expected, [](const HitD& hit) { return static_cast<bool>(hit); }), 100);
-  for (const int threads : {1, 2, 0}) {
-    BvhD tree(mesh.vertices, mesh.triangles, {.threads = threads});
-    tree.refit(then.vertices, then.triangles, threads);
-    tree.closest(rays, hits);
-    EXPECT_TRUE(same_bytes(hits, expected)) << threads;
-    EXPECT_TRUE(same_bytes(tree.bounds(), built.bounds())) << threads;
-    EXPECT_EQ(tree.report().sah_cost, alone.report().sah_cost) << threads;
-  }
 }
 
 TEST(DoubleTrees, tell_of_each_triangle_once) {
