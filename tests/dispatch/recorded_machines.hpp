@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include <raylanes/cpu_features.hpp>
 
@@ -24,7 +25,15 @@ inline constexpr std::uint32_t amd = 0x68747541u, intel = 0x756e6547u;  // "Auth
 // numbers are those the named processor was seen to return in public CPUID dumps (the InstLatx64 collection). The
 // dumps hold no XCR0: it is inferred from the size of the enabled save area in leaf 0xD (0x240: XMM only, 0x340: with
 // YMM, 0x980 or 0xa80: with ZMM, 0x2b00: with tiles too).
-inline const Recorded recorded_machines[] = {
+using Cpu = CpuidRegisters;
+inline constexpr Cpu haswell{0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
+    skylake_x{0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x121, 0xff, intel, 0x00050654};
+template <class Word>
+constexpr Cpu with(Cpu machine, Word Cpu::*word, std::type_identity_t<Word> value) {
+  machine.*word = value;
+  return machine;
+}
+inline constexpr Recorded recorded_machines[] = {
     // No AVX in hardware.
     {"Athlon 64 3200+ (K8 Venice)",
      {0x1, 0x80000018, 0x00000001, 0x078bfbff, 0, 0, 0, 0x00000001, 0},
@@ -73,9 +82,7 @@ inline const Recorded recorded_machines[] = {
      {0xd, intel_last, 0x7efa63ab, 0xbfcbfbff, 0x000c25ab, 0, 0, 0x00000121, 0x7},
      "avx"},
     // AVX2.
-    {"Core i7-4770 (Haswell)",
-     {0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
-     "avx2"},
+    {"Core i7-4770 (Haswell)", haswell, "avx2"},
     {"Opteron X3216 (Excavator)",
      {0xd, 0x8000001e, 0x7ed8320b, 0x178bfbff, 0x000001a9, 0, 0, 0x2fabbfff, 0x7},
      "avx2"},
@@ -92,9 +99,7 @@ inline const Recorded recorded_machines[] = {
      {0xd, intel_last, 0x7ff8f39f, 0xbfebfbff, 0x1c0d23ab, 0x00000001, 0x04000000, 0x00000121, 0xe7},
      "avx2"},
     // AVX-512.
-    {"Core i9-7900X (Skylake-X)",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xff, intel, 0x00050654},
-     "avx512"},
+    {"Core i9-7900X (Skylake-X)", skylake_x, "avx512"},
     {"Core i7-1065G7 (Ice Lake)",
      {0x1b, intel_last, 0x7ffafbbf, 0xbfebfbff, 0xf2bf27ef, 0x40405f4e, 0xbc000410, 0x00000121, 0xe7},
      "avx512"},
@@ -110,57 +115,26 @@ inline const Recorded recorded_machines[] = {
       0x00a60f12},
      "avx512"},
     // Constructed by masking a recorded machine, as an operating system, a BIOS or a hypervisor does.
-    {"constructed: Skylake-X, ZMM state off",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0x7},
-     "avx2"},
-    {"constructed: Skylake-X, only the mask registers off",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xc7},
-     "avx2"},
-    {"constructed: Skylake-X, only the upper halves off",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xa7},
-     "avx2"},
-    {"constructed: Skylake-X, only the upper registers off",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0x67},
-     "avx2"},
-    {"constructed: Skylake-X, ZMM state on, YMM state off",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xe3},
-     "sse2"},
-    {"constructed: Skylake-X, OSXSAVE off, stale XCR0",
-     {0x16, intel_last, 0x77fefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xff},
-     "sse2"},
-    {"constructed: Skylake-X, AVX masked, AVX2 and AVX-512 not",
-     {0x16, intel_last, 0x6ffefbbf, 0xbfebfbff, 0xd39ffffb, 0, 0, 0x00000121, 0xff},
-     "sse2"},
-    {"constructed: Skylake-X, AVX512F masked, its relatives not",
-     {0x16, intel_last, 0x7ffefbbf, 0xbfebfbff, 0xd39efffb, 0, 0, 0x00000121, 0xff},
-     "avx2"},
-    {"constructed: Haswell, leaf 7 masked",
-     {0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0, 0, 0, 0x00000021, 0x7},
+    {"constructed: Skylake-X, ZMM state off", with(skylake_x, &Cpu::xcr0, 0x7), "avx2"},
+    {"constructed: Skylake-X, only the mask registers off", with(skylake_x, &Cpu::xcr0, 0xc7), "avx2"},
+    {"constructed: Skylake-X, only the upper halves off", with(skylake_x, &Cpu::xcr0, 0xa7), "avx2"},
+    {"constructed: Skylake-X, only the upper registers off", with(skylake_x, &Cpu::xcr0, 0x67), "avx2"},
+    {"constructed: Skylake-X, ZMM state on, YMM state off", with(skylake_x, &Cpu::xcr0, 0xe3), "sse2"},
+    {"constructed: Skylake-X, no OSXSAVE, stale XCR0", with(skylake_x, &Cpu::leaf1_ecx, 0x77fefbbf), "sse2"},
+    {"constructed: Skylake-X, AVX alone masked", with(skylake_x, &Cpu::leaf1_ecx, 0x6ffefbbf), "sse2"},
+    {"constructed: Skylake-X, AVX512F alone masked", with(skylake_x, &Cpu::leaf7_ebx, 0xd39efffb), "avx2"},
+    {"constructed: Haswell, leaf 7 masked", with(haswell, &Cpu::leaf7_ebx, 0), "avx"},
+    {"constructed: Haswell, max_leaf limited to 6, leaf 7 not masked", with(haswell, &Cpu::max_leaf, 6),
      "avx"},
-    {"constructed: Haswell, max_leaf limited to 6, leaf 7 not masked",
-     {0x6, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
+    {"constructed: Haswell, no LZCNT without leaf 1", with(haswell, &Cpu::max_extended_leaf, 0x80000000),
      "avx"},
-    {"constructed: Haswell, no extended leaf 1, so no LZCNT",
-     {0xd, 0x80000000, 0x7ffafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
-     "avx"},
-    {"constructed: Haswell, LZCNT off",
-     {0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000001, 0x7},
-     "avx"},
-    {"constructed: Haswell, BMI1 off",
-     {0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000027a3, 0, 0, 0x00000021, 0x7},
-     "avx"},
-    {"constructed: Haswell, BMI2 off",
-     {0xd, intel_last, 0x7ffafbff, 0xbfebfbff, 0x000026ab, 0, 0, 0x00000021, 0x7},
-     "avx"},
-    {"constructed: Haswell, FMA off",
-     {0xd, intel_last, 0x7ffaebff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
-     "avx"},
-    {"constructed: Haswell, AES off (avx2-highway goes, avx2 stays)",
-     {0xd, intel_last, 0x7dfafbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
-     "avx2"},
-    {"constructed: Haswell, POPCNT off",
-     {0xd, intel_last, 0x7f7afbff, 0xbfebfbff, 0x000027ab, 0, 0, 0x00000021, 0x7},
-     "sse2"},
+    {"constructed: Haswell, LZCNT off", with(haswell, &Cpu::extended1_ecx, 0x00000001), "avx"},
+    {"constructed: Haswell, BMI1 off", with(haswell, &Cpu::leaf7_ebx, 0x000027a3), "avx"},
+    {"constructed: Haswell, BMI2 off", with(haswell, &Cpu::leaf7_ebx, 0x000026ab), "avx"},
+    {"constructed: Haswell, FMA off", with(haswell, &Cpu::leaf1_ecx, 0x7ffaebff), "avx"},
+    // avx2-highway goes, avx2 stays.
+    {"constructed: Haswell, AES off", with(haswell, &Cpu::leaf1_ecx, 0x7dfafbff), "avx2"},
+    {"constructed: Haswell, POPCNT off", with(haswell, &Cpu::leaf1_ecx, 0x7f7afbff), "sse2"},
     {"constructed: not an x86", {}, "scalar"},
 };
 
