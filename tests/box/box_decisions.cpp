@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -176,21 +175,6 @@ TEST(Boxes, plain_slabs_miss_what_conservative_ones_keep) {
       } else if (i == 0) {
         EXPECT_FALSE(hit) << variant.name() << ' ' << i;
       }
-    }
-  }
-}
-
-TEST(Boxes, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
-  Random random(205);
-  for (int round = 0; round < (quick() ? 1 : 5); ++round) {
-    const BoxScene scene =
-        grazing_scene(45, 5, std::pow(10.0f, static_cast<float>(round)), round % 2 == 1, random);
-    std::map<BoxTest, Results> first;
-    for (const BoxVariant& variant : all_variants<BoxTest>()) {
-      if (variant.grade != Grade::reproducible) continue;
-      const Results results = answers(variant, scene.rays, scene.primitives);
-      const auto [kept, is_new] = first.emplace(variant.test, results);
-      ASSERT_TRUE(is_new || kept->second == results) << variant.name();
     }
   }
 }

@@ -108,18 +108,6 @@ TEST(DoubleRoots, keep_their_bounds_and_come_near_them) {
   }
 }
 
-TEST(DoubleRoots, of_reproducible_methods_have_the_same_bits_on_every_path) {
-  const std::vector<double> x = numbers();
-  const std::vector<NamedRoot<double>> scalar = roots_of<double>(paths().front());
-  for (const Path* path : supported_paths()) {
-    const std::vector<NamedRoot<double>> list = roots_of<double>(*path);
-    for (std::size_t r = 0; r < list.size(); ++r) {
-      if (!list[r].promise->reproducible) continue;
-      EXPECT_EQ(results(list[r].function, x), results(scalar[r].function, x)) << list[r].name;
-    }
-  }
-}
-
 std::vector<double> specials(const NamedRoot<double>& root) {
   std::vector<double> x;
   for (const double a :

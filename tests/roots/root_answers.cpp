@@ -250,28 +250,6 @@ INSTANTIATE_TEST_SUITE_P(OnEveryPath, Accuracies, ::testing::ValuesIn(supported_
                            return name;
                          });
 
-// --- The same bits.
-
-TEST(Roots, of_reproducible_methods_have_the_same_bits_on_every_path) {
-  std::vector<float> x;
-  const std::uint64_t step = quick() ? 1000003 : 10007;
-  for (std::uint64_t bits = 0; bits < 0x100000000; bits += step) x.push_back(from_bits(bits));
-  for (std::uint64_t border = 0; border <= 0x100000000; border += min_normal)
-    for (std::uint64_t offset = 0; offset < 4; ++offset) x.push_back(from_bits(border - 2 + offset));
-  const std::vector<NamedRoot<float>> scalar = roots_of<float>(paths().front());
-  for (const Path* path : supported_paths()) {
-    const std::vector<NamedRoot<float>> list = roots_of<float>(*path);
-    for (std::size_t r = 0; r < list.size(); ++r) {
-      if (!list[r].promise->reproducible) continue;
-      // Both rows of a method that has two.
-      const auto same = std::ranges::find(scalar, list[r].promise, &NamedRoot<float>::promise);
-      ASSERT_NE(same, scalar.end()) << list[r].name;
-      const std::size_t i = first_difference(results(list[r].function, x), results(same->function, x));
-      ASSERT_EQ(i, x.size()) << list[r].name << " of bits " << std::hex << to_bits(x[i]);
-    }
-  }
-}
-
 #define RAYLANES_COURSE(path) &detail::path##_course_roots,
 const bench::CourseRoots* const all_course_roots[] = {RAYLANES_EACH_PATH(RAYLANES_COURSE)};
 

@@ -153,15 +153,5 @@ TEST(Lines, change_no_decision_with_the_length_or_sense_of_the_direction) {
       }
 }
 
-TEST(Lines, have_the_same_decisions_on_every_path_in_the_reproducible_grade) {
-  Random random(311);
-  for (const double distance : {1.0, 1e3, 1e5}) {
-    const SphereScene scene = sphere_scene(distance, random);
-    const auto first = line_answers(paths().front(), Grade::reproducible, scene.rays, scene.primitives);
-    for (const Path* path : supported_paths())
-      ASSERT_EQ(line_answers(*path, Grade::reproducible, scene.rays, scene.primitives), first) << path->name;
-  }
-}
-
 }  // namespace
 }  // namespace raylanes::testing

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -136,20 +135,6 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(DistanceCase{textbook, 1e0, 0, 0.002}, DistanceCase{textbook, 1e1, 0, 0.002},
                       DistanceCase{textbook, 1e2, 0.001, 0.02}, DistanceCase{textbook, 1e3, 0.15, 0.5},
                       DistanceCase{textbook, 1e4, 0.9, 1}, DistanceCase{textbook, 1e5, 0.9, 1}));
-
-TEST(Spheres, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
-  Random random(302);
-  for (int round = 0; round < (quick() ? 1 : 6); ++round) {
-    const SphereScene scene = sphere_scene(std::pow(10.0, round), random);
-    std::map<SphereTest, std::vector<IntervalResult>> first;
-    for (const SphereVariant& variant : all_variants<SphereTest>()) {
-      if (variant.grade != Grade::reproducible) continue;
-      const std::vector<IntervalResult> results = answers(variant, scene.rays, scene.primitives);
-      const auto [kept, is_new] = first.emplace(variant.test, results);
-      ASSERT_TRUE(is_new || kept->second == results) << variant.name();
-    }
-  }
-}
 
 // Huge balls close by: the ground of a planet.
 TEST(Spheres, huge_ones_keep_their_distances) {

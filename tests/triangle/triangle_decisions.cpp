@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -167,21 +166,6 @@ TEST(Triangles, of_moller_and_trumbore_have_the_same_bits_from_corners_from_edge
     expect_equal_bits_of_moller_trumbore(integer_scene(random));
     if (HasFailure()) return;
   }
-}
-
-TEST(Triangles, have_the_same_bits_on_every_path_in_the_reproducible_grade) {
-  Random random(102);
-  for (int round = 0; round < by_level(1, 3, 8); ++round)
-    for (const Aim aim : aims) {
-      const TriangleScene scene = scene_for_all_widths(aim, random);
-      std::map<TriangleTest, Results> first;
-      for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
-        if (variant.grade != Grade::reproducible) continue;
-        const Results results = answers(variant, scene.rays, scene.triangles);
-        const auto [kept, is_new] = first.emplace(variant.test, results);
-        ASSERT_TRUE(is_new || kept->second == results) << variant.name();
-      }
-    }
 }
 
 // Equal hits on both sides of a register's end: the first of them is in the last lane of any width.
