@@ -4,6 +4,7 @@
 
 #include <raylanes/paths.hpp>
 
+#include "../oracles/peeled.hpp"
 #include "../queries/query_trees.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/same_bytes.hpp"
@@ -46,25 +47,9 @@ std::vector<Ray> lattice_rays(Random& random, std::size_t count) {
 
 void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::uint32_t mask,
                          const TraceOptions& options) {
-  std::vector<std::vector<SceneHit>> expected;
-  std::size_t most = 0;
-  for (const Ray& ray : rays) {
-    expected.push_back(all_scene_hits(scene, ray, mask));
-    most = std::max(most, expected.back().size());
-  }
-  std::vector<SceneHit> hits(rays.size());
-  scene.closest(rays, hits, options, mask);
-  std::vector<SceneHit> from_the_start(rays.size(), SceneHit{-infinity, 0, 0, 0, 0, 0}), first(rays.size());
-  scene.closest(rays, first, behind(options, from_the_start), mask);
-  for (std::size_t step = 0; step <= most; ++step) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const SceneHit wanted = step < expected[i].size() ? expected[i][step] : SceneHit();
-      ASSERT_TRUE(same_bytes(hits[i], wanted))
-          << "ray " << i << ", hit " << step << ": " << text(hits[i]) << ", not " << text(wanted);
-      ASSERT_TRUE(step > 0 || same_bytes(first[i], wanted)) << "ray " << i;
-    }
-    scene.closest(rays, hits, behind(options, hits), mask);
-  }
+  expect_peeled<SceneHit>(
+      rays, options, [&](const auto& from, auto&&... rest) { return scene.closest(from, rest..., mask); },
+      [&](const Ray& ray) { return all_scene_hits(scene, ray, mask); });
 }
 
 TEST(SceneNext, are_all_hits_in_order) {

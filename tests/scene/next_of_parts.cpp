@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../oracles/peeled.hpp"
 #include "../support/filtered.hpp"
 #include "boxed_cases.hpp"
 
@@ -100,35 +101,6 @@ std::vector<Ray> rays_at_ties(std::size_t count, std::uint64_t seed) {
                               : make_ray({-7, number(), number() / 4}, {1, 0, 0}));
   }
   return rays;
-}
-
-// Peels all hits of all rays off, in batches and alone. closest(rays, hits, options) and closest(ray, options).
-template <class AnyHit, class Options, class Closest, class AllOf>
-void expect_peeled(const std::vector<Ray>& rays, const Options& options, const Closest& closest,
-                   const AllOf& all_of) {
-  std::vector<std::vector<AnyHit>> expected;
-  std::size_t most = 0;
-  for (const Ray& ray : rays) expected.push_back(all_of(ray)), most = std::max(most, expected.back().size());
-  EXPECT_GT(most, 2u);
-  AnyHit before_all;
-  before_all.t = -infinity, before_all.primitive = 0;
-  std::vector<AnyHit> hits(rays.size()), first(rays.size(), before_all);
-  closest(rays, hits, options);
-  Options from_the_first = options;
-  from_the_first.after = first;
-  closest(rays, first, from_the_first);
-  EXPECT_TRUE(same_bytes(first, hits));
-  for (std::size_t layer = 0; layer <= most; ++layer) {
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      ASSERT_TRUE(same_bytes(hits[i], layer < expected[i].size() ? expected[i][layer] : AnyHit()))
-          << "ray " << i << ", layer " << layer << " of " << expected[i].size() << ", t " << hits[i].t;
-    Options behind = options;
-    behind.after = hits[layer % rays.size()];
-    const AnyHit alone = closest(rays[layer % rays.size()], behind);
-    behind.after = hits;
-    closest(rays, hits, behind);
-    ASSERT_TRUE(same_bytes(alone, hits[layer % rays.size()]));
-  }
 }
 
 TEST(NextOfSpheres, are_where_rays_enter_and_leave_them) {

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "../oracles/passage_oracle.hpp"
+#include "../oracles/peeled.hpp"
 #include "../queries/query_trees.hpp"
 #include "../support/same_bytes.hpp"
 #include "expect_scene.hpp"
@@ -56,25 +57,7 @@ void expect_passages(const Scene& scene, const std::vector<Ray>& rays, Facing fa
   on_each_path([&](const Path* path, int threads) {
     TraceOptions options{.path = path, .threads = threads, .facing = facing};
     if (skips) options.skip = skip;
-    std::vector<SceneHit> hits(rays.size());
-    scene.closest_crossing(rays, hits, options, mask);
-    bool some = true;
-    for (std::size_t layer = 0; some; ++layer) {
-      some = false;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const SceneHit wanted = layer < expected[i].size() ? expected[i][layer] : SceneHit();
-        ASSERT_TRUE(same_bytes(hits[i], wanted))
-            << "ray " << i << ", layer " << layer << ": " << text(hits[i]) << ", not " << text(wanted);
-        some = some || hits[i];
-        if (layer > 0 || i % 7 != 0) continue;
-        TraceOptions alone{.path = path, .facing = facing};
-        if (skips) alone.skip = skip[i];
-        ASSERT_TRUE(same_bytes(scene.closest_crossing(rays[i], alone, mask), wanted)) << i;
-      }
-      TraceOptions behind = options;
-      behind.after = hits;
-      scene.closest_crossing(rays, hits, behind, mask);
-    }
+    expect_peeled(rays, expected, options, passages_of(scene, rays, skip, mask));
   });
 }
 

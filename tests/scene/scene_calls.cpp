@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "triangle_parts.hpp"
 
@@ -59,17 +60,8 @@ TEST(Scene, takes_rays_as_arrays_with_a_mask_and_counts) {
   const TriangleParts parts = random_parts(25, 1, 4, random);
   const std::vector<Ray> rays = rays_to_instances(parts.scene, 777, 6, random);
   const std::vector<SceneHit> expected = all_by_trees(parts, rays);
-  std::vector<float> numbers[8];
-  for (const Ray& ray : rays) {
-    for (std::size_t k = 0; k < 3; ++k)
-      numbers[k].push_back(ray.origin[k]), numbers[3 + k].push_back(ray.direction[k]);
-    numbers[6].push_back(ray.tmin), numbers[7].push_back(ray.tmax);
-  }
-  const RayArrays arrays{{numbers[0].data(), numbers[1].data(), numbers[2].data()},
-                         {numbers[3].data(), numbers[4].data(), numbers[5].data()},
-                         numbers[6].data(),
-                         numbers[7].data(),
-                         rays.size()};
+  const RayColumns columns(rays);
+  const RayArrays arrays = columns.view();
   for (const std::vector<std::uint8_t>& mask : masks_for(rays.size(), random)) {
     const SceneHit before{1, 2, 3, 4, 5, 6};
     std::vector<SceneHit> hits(rays.size(), before);
