@@ -8,6 +8,7 @@
 #include "../fuzz/fence.hpp"
 #include "../fuzz/support.hpp"
 #include "../oracles/passage_oracle.hpp"
+#include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "summed_windings.hpp"
 
@@ -75,14 +76,8 @@ void expect_passages(const BvhD& tree, const DoubleMesh& mesh, const std::vector
 // The first few hits of each ray, from records and from one array per number.
 void expect_few_hits(const BvhD& tree, const std::vector<RayD>& rays,
                      const std::vector<std::vector<HitD>>& expected, const ListOptions& options) {
-  std::vector<double> number[8];
-  for (const auto& [o, tmin, d, tmax] : rays) {
-    const double numbers[] = {o[0], o[1], o[2], d[0], d[1], d[2], tmin, tmax};
-    for (std::size_t k = 0; k < 8; ++k) number[k].push_back(numbers[k]);
-  }
-  const auto at = [&](std::size_t k) { return number[k].data(); };
-  const RayArraysD arrays{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), rays.size()};
-  const RayLists<HitD> few = tree.all_hits(rays, options), of_arrays = tree.all_hits(arrays, options);
+  const RayColumns columns(rays);
+  const RayLists<HitD> few = tree.all_hits(rays, options), of_arrays = tree.all_hits(columns.view(), options);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::size_t size = std::min<std::size_t>(expected[i].size(), options.max_count);
     if (!same_bytes(few[i], std::span(expected[i]).first(size)) || !same_bytes(of_arrays[i], few[i]))

@@ -1,17 +1,16 @@
 // Every reader of mesh files on files that were damaged: a mesh that is valid, or an error of one line that
 // names the file; in bounded memory and time.
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "../../../bench/support/readers/mesh_reader.hpp"
+#include "../../../bench/tests/temporary_folder.hpp"
 #include "../bytes.hpp"
 #include "../support.hpp"
 
@@ -148,28 +147,6 @@ void damage(Bytes& bytes, std::string& text) {
   }
 }
 
-// A folder for this process that goes with it; in memory where there is such a place.
-class Folder {
- public:
-  Folder() {
-    std::string pattern =
-        std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path();
-    pattern += "/raylanes_fuzz_XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no folder " + pattern);
-    path_ = pattern;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path write(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 // Sanitizers reserve more addresses than any limit.
 void bound_memory() {
 #ifndef RAYLANES_SANITIZED
@@ -202,7 +179,7 @@ void read(const std::filesystem::path& file, std::size_t bytes) {
 
 int fuzz_readers(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes::testing;
-  static const Folder folder;
+  static const raylanes::bench::TemporaryFolder folder;
   [[maybe_unused]] static const bool bounded = (bound_memory(), true);
   Bytes bytes(data, size);
   Sample sample = bytes.pick(samples());
