@@ -197,10 +197,8 @@ void check_replaced_by_the_instruction() {
   }
   roots.sqrt.within[0] = SqrtMethod::goldschmidt_beside_hardware;
   EXPECT_EQ(kept_method(roots, SqrtMethod::estimate), SqrtMethod::estimate);
-  const KernelTable& own = kernels_of(paths().front());
-  const KernelTable kernels{roots,      own.triangles, own.boxes,   own.spheres, own.traversal, own.counted,
-                            own.kdtree, own.points,    own.winding, own.queries, own.doubles};
   const Path& front = paths().front();
+  const KernelTable kernels = with_roots(kernels_of(front), roots);
   const Path path =
       PathKernels::make(front.name, front.isa, front.library, front.lanes, front.required, kernels);
   float y[std::size(hardest_roots)];

@@ -125,9 +125,7 @@ RootAccuracy judged_fault(ArrayFunction<float> function) {
   const KernelTable& right = kernels_of(paths().front());
   RootKernels roots = right.roots;
   roots.sqrt.by[hardware] = function;
-  const KernelTable faulty{roots,           right.triangles, right.boxes,  right.spheres,
-                           right.traversal, right.counted,   right.kdtree, right.points,
-                           right.winding,   right.queries,   right.doubles};
+  const KernelTable faulty = with_roots(right, roots);
   const Path path = PathKernels::make("faulty", "scalar", "none", 1, {}, faulty);
   return judge({{RootFunction::sqrt, hardware, &path}}, 1u << 19)[0].accuracy;
 }

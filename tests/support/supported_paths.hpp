@@ -74,6 +74,12 @@ inline std::vector<const Path*> supported_paths() {
   return usable;
 }
 
+// The kernels of a path, but other roots.
+inline KernelTable with_roots(const KernelTable& of, const RootKernels& roots) {
+  return {roots,      of.triangles, of.boxes,   of.spheres, of.traversal, of.kdtree,
+          of.counted, of.points,    of.winding, of.queries, of.doubles};
+}
+
 // One of the supported paths for each code of queries, points, winding numbers and doubles, which paths with the same
 // instructions have in common.
 inline std::vector<const Path*> paths_with_own_queries() {
