@@ -70,7 +70,7 @@ def expect_clean_of_everyone(name, call):
 
 
 def expect_clean_at_first(name, call):
-    """The same in processes of which each has the first call fail: at one allocation of three, unless all are tested."""
+    """The same in processes of which each has the first call fail: at one allocation of three if not exhaustive."""
     failures, status = 0, 0
     step = 1 if os.environ.get("RAYLANES_LEVEL") == "exhaustive" else 3
     while True:
