@@ -2,6 +2,8 @@
 
 #include <mutex>
 
+#include <raylanes/doubles.hpp>
+
 #include "../../dispatch/checked.hpp"
 #include "windings.hpp"
 
