@@ -7,15 +7,54 @@
 #pragma once
 
 #include <algorithm>
+#include <mutex>
 #include <type_traits>
 
 #include <raylanes/bounded_tree.hpp>
 
+#include "../../dispatch/table/traversal.hpp"
 #include "in_parallel.hpp"
 #include "ray_source.hpp"
 #include "scratch.hpp"
 
 namespace raylanes {
+
+struct BatchPlan {
+  int threads;  // as in TraceOptions, not negative
+  TraceCounters* counters;
+  std::size_t max_call = max_rays_of_a_call;  // rays of a call
+  // A thread's part, where there is more than one: at least and at most so many, and some for each.
+  std::size_t min_part = 4096, parts_per_thread = 4, max_part = max_rays_of_a_call;
+  const Progress* progress = nullptr;  // as in TraceOptions
+  bool fixed_parts = false;            // whether results may depend on which elements are in a part
+};
+
+// The sizes of parts of n elements that are reported. The first part tells how long elements take.
+inline PartSizes reported_sizes(const BatchPlan& plan, std::size_t n, std::size_t grain) {
+  constexpr std::size_t first = 64;
+  const std::size_t fixed = std::min(grain, plan.max_call),
+                    most = std::max<std::size_t>(1, std::min(grain, n));
+  return plan.fixed_parts ? PartSizes{fixed, fixed, fixed} : PartSizes{std::min(first, most), 1, most};
+}
+
+// work(begin, end, counters) over parts of n rays or points: each part has counters of its own, which are added to the
+// plan's; null if that is.
+template <class Work>
+void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
+  std::mutex adding;
+  const auto counted = [&](std::size_t begin, std::size_t end) {
+    TraceCounters counters;
+    work(begin, end, plan.counters != nullptr ? &counters : nullptr);
+    if (plan.counters == nullptr) return;
+    const std::lock_guard<std::mutex> one_at_a_time(adding);
+    *plan.counters += counters;
+  };
+  const std::size_t grain = grain_of(n, plan.threads, plan.parts_per_thread, plan.min_part, plan.max_part);
+  if (plan.progress != nullptr && *plan.progress)
+    in_reported_parts(n, reported_sizes(plan, n, grain), plan.threads, *plan.progress, std::cref(counted));
+  else if (n > 0)
+    in_parallel(n, grain, plan.threads, counted);
+}
 
 // The active rays among some of a source at a time, as kernels read them, their indices in it, and what they skip.
 template <class Source>

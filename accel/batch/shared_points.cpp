@@ -264,12 +264,13 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     const std::span<Point> some(directions.data(),
                                 std::clamp(rays.size() / 32, max_directions / 8, max_directions));
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = seen_from_point(i);
-    const double all = solid_angle_of(some);
-    if (rays.size() < min_wide_packet && all > wide_packet) return {max_of_a_ray, max_of_a_ray};
-    of_a_ray = all / static_cast<double>(rays.size());
+    const double view = solid_angle_of(some);
+    if (rays.size() < min_wide_packet && view > wide_packet) return {max_of_a_ray, max_of_a_ray};
+    of_a_ray = view / static_cast<double>(rays.size());
   }
   const std::size_t traced = by_origins ? std::clamp<std::size_t>(rays.size() / 64, 4, max_traced)
                                         : std::clamp<std::size_t>(rays.size() / 128, 3, max_traced);
+  const bool one_may_decide = !by_origins && rays.size() <= few_rays;
   // The share of a ray, if all together went anywhere through the tree.
   const double all = area_of(tree.bounds) / static_cast<double>(std::min(rays.size(), rays_of_streams));
   std::array<double, max_traced> triangles;
@@ -290,7 +291,7 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     double number = share / triangle.solid_angle;
     if (by_origins) number = std::min(number, all / triangle.area);
     if (number >= 0) triangles[seen++] = number;
-    if (!by_origins && rays.size() <= few_rays && (number < surely_few || number > surely_many)) break;
+    if (one_may_decide && (number < surely_few || number > surely_many)) break;
   }
   if (seen == 0)
     return traced < max_traced && !by_origins ? TrianglesOfRays{max_of_a_ray, max_of_a_ray}
