@@ -56,6 +56,12 @@ void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
     in_parallel(n, grain, plan.threads, counted);
 }
 
+template <class Source>
+bool takes_all([[maybe_unused]] const Source& source) {
+  if constexpr (requires { source.takes_all(); }) return source.takes_all();
+  return false;
+}
+
 // The active rays among some of a source at a time, as kernels read them, their indices in it, and what they skip.
 template <class Source>
 class ActiveRays {
@@ -79,9 +85,8 @@ class ActiveRays {
       rays = in_place_ + begin, size = count, indices = {begin};
       return load_skips(begin);
     }
-    rays = copies_, size = 0, indices = {0, indices_};
-    for (std::size_t i = begin; i < begin + count; ++i)
-      if (source_.takes_part(i)) copies_[size] = source_[i], indices_[size++] = i;
+    rays = copies_, size = copy(begin, count);
+    indices = size == count ? detail::RayNumbers{begin} : detail::RayNumbers{0, indices_};
     load_skips(begin);
   }
 
@@ -107,6 +112,25 @@ class ActiveRays {
       if (skips_ == nullptr) skip = static_cast<const std::uint32_t*>(source_.skip.first) + begin;
       for (std::size_t k = 0; skips_ != nullptr && k < size; ++k) skips_[k] = source_.skip[indices[k]];
     }
+  }
+  // Returns how many take part.
+  std::size_t copy(std::size_t begin, std::size_t count) const {
+    std::size_t n = 0;
+    const auto copy_all = [&](const auto& put) {
+      if (takes_all(source_))
+        for (; n < count; ++n) put(begin + n, copies_[n]);
+      else
+        for (std::size_t i = begin; i < begin + count; ++i)
+          if (source_.takes_part(i)) put(i, copies_[n]), indices_[n++] = i;
+    };
+    if constexpr (requires { source_.segments; })
+      if (source_.segments != nullptr) {
+        const auto segments = *source_.segments;
+        copy_all([&](std::size_t i, Ray& ray) { segments.put(i, ray); });
+        return n;
+      }
+    copy_all([&](std::size_t i, Ray& ray) { ray = source_[i]; });
+    return n;
   }
   static constexpr bool can_skip = requires(const Source& source) { source.skip; };
 
@@ -159,7 +183,7 @@ template <class Source, class Sink, class ScratchBytes, class Work>
 void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,
                 const ScratchBytes& scratch_bytes, const Work& work) {
   using Answer = typename Sink::Answer;
-  Answer* const out = rays.in_place() != nullptr ? sink.in_place() : nullptr;
+  Answer* const out = takes_all(rays) ? sink.in_place() : nullptr;
   over_parts(plan, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     const std::size_t most = std::min(plan.max_call, end - begin), own_bytes = scratch_bytes(most);
     Scratch scratch(ActiveRays<Source>::bytes(rays, most) + Scratch::bytes_of<std::byte>(own_bytes) +

@@ -21,17 +21,23 @@ struct SegmentsOf {
   VertexRecords<T> points;
   SegmentEndsOf<T> ends;
 
-  RayOf<T> operator[](std::size_t i) const {
+  RayOf<T> ray(std::size_t i) const {
+    RayOf<T> ray;
+    put(i, ray);
+    return ray;
+  }
+  // Number by number where the ray is to lie: one that is put together elsewhere and copied waits for its own stores.
+  void put(std::size_t i, RayOf<T>& ray) const {
     const PointOf<T> to = points[i];
-    RayOf<T> ray{from, ends.start, to, ends.end};
     T none = 0;  // NaN if a difference is not finite
+    ray.tmin = ends.start, ray.tmax = ends.end;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ray.direction[axis] -= from[axis];
-      none += ray.direction[axis] - ray.direction[axis];
+      const T difference = to[axis] - from[axis];
+      ray.origin[axis] = from[axis], ray.direction[axis] = difference;
+      none += difference - difference;
     }
     if (none != 0) [[unlikely]]
       halve(ray, to);
-    return ray;
   }
 
  private:
@@ -60,8 +66,9 @@ struct RaySourceOf {
     return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
   }
   bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
+  bool takes_all() const { return active == nullptr; }
   Ray operator[](std::size_t i) const {
-    if (segments != nullptr) return (*segments)[i];
+    if (segments != nullptr) return segments->ray(i);
     if (arrays == nullptr) return records[i];
     return {{arrays->origin[0][i], arrays->origin[1][i], arrays->origin[2][i]},
             arrays->tmin[i],

@@ -36,8 +36,8 @@ bool looks_for(const TraversalChoice& choice, BatchHint point) {
 }
 
 // Measured: where there are more triangles for each ray, rays meet so little together that single ones take less time
-// than streams: neighbours in flight, others in flight, and others one after the other.
-constexpr double max_of_neighbours = 8, max_of_others = 2, max_in_row = 6;
+// than streams: neighbours and others in flight, and both one after the other.
+constexpr double max_of_neighbours = 8, max_of_others = 2, max_of_neighbours_in_row = 40, max_in_row = 6;
 
 bool may_fly(const TreeView& tree, const TraversalChoice& choice) {
   return tree.rays_wait && choice.may_fly;
@@ -62,8 +62,8 @@ TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choi
   const PacketsOf kind = only_decides ? PacketsOf::any_hits : PacketsOf::nearest_hits;
   if (may_be_packets && packets_pay(triangles, kind)) return TraversalMode::packet;
   if (are_few(tree, batch)) return TraversalMode::single;
-  return may_fly(tree, choice) && triangles.middle > max_of_neighbours ? TraversalMode::single
-                                                                       : TraversalMode::stream;
+  const double most = may_fly(tree, choice) ? max_of_neighbours : max_of_neighbours_in_row;
+  return triangles.middle > most ? TraversalMode::single : TraversalMode::stream;
 }
 
 // The mode of rays that have nothing in common.

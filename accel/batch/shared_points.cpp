@@ -153,10 +153,11 @@ namespace {
 // size, so the first ray that sees far fewer or far more than any limit decides for all. Counts above max_of_a_ray are
 // max_of_a_ray.
 constexpr std::size_t max_directions = 64, max_traced = 32, few_rays = 1024;
-constexpr double max_of_a_ray = 8, surely_few = 0.05, surely_many = 16;
-// Fewer rays in a wider solid angle have too little in common for a packet, however large triangles are: measured.
-constexpr std::size_t min_wide_packet = 256;
-constexpr double wide_packet = 0.1;
+constexpr double max_of_a_ray = 4, surely_few = 0.05, surely_many = 16;
+// Fewer rays a steradian have too little in common for a packet, however large triangles are: measured. Below so many
+// rays nobody asks for more.
+constexpr double min_density_of_packets = 2048;
+constexpr std::size_t min_wide_stream = 320;
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 double length_of(const Point& a) {
@@ -260,13 +261,15 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     return unit(shared == SharedApex::end ? Point(ray.origin) - Point(point) : Point(ray.direction));
   };
   double of_a_ray = 0;
+  bool are_sparse = false;
   if (has_point) {
     const std::span<Point> some(directions.data(),
                                 std::clamp(rays.size() / 32, max_directions / 8, max_directions));
     for (std::size_t i = 0; i < some.size(); ++i) some[i] = seen_from_point(i);
     const double view = solid_angle_of(some);
-    if (rays.size() < min_wide_packet && view > wide_packet) return {max_of_a_ray, max_of_a_ray};
     of_a_ray = view / static_cast<double>(rays.size());
+    are_sparse = of_a_ray * min_density_of_packets > 1;
+    if (are_sparse && rays.size() < min_wide_stream) return {max_of_a_ray, max_of_a_ray};
   }
   const std::size_t traced = by_origins ? std::clamp<std::size_t>(rays.size() / 64, 4, max_traced)
                                         : std::clamp<std::size_t>(rays.size() / 128, 3, max_traced);
@@ -296,12 +299,14 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
   if (seen == 0)
     return traced < max_traced && !by_origins ? TrianglesOfRays{max_of_a_ray, max_of_a_ray}
                                               : TrianglesOfRays{};
-  return summary_of({triangles.data(), seen});
+  TrianglesOfRays all_seen = summary_of({triangles.data(), seen});
+  if (are_sparse) all_seen.mean = max_of_a_ray;
+  return all_seen;
 }
 
 // Measured: from so many triangles a ray on streams take less time, and single rays where they are few.
 bool packets_pay(const TrianglesOfRays& triangles, PacketsOf kind) {
-  constexpr double of_closest = 0.35, of_any = 0.2;
+  constexpr double of_closest = 0.35, of_any = 0.25;
   return triangles.mean < (kind == PacketsOf::any_hits ? of_any : of_closest);
 }
 

@@ -21,6 +21,9 @@ struct PacketRows {
 };
 template <class Counters>
 struct StreamRows {
+  // Fused, the watertight test gains 1 % in streams, in the middle of six scenes by three sets of rays; packets, 5 %.
+  template <class Fast>
+  static constexpr bool has_fast_code = has_fma && !is_filtered<Fast> && Fast::id != TriangleTest::watertight;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_stream<Test, Counters>, any_stream<Test, Counters>, OctantScratch::bytes};

@@ -232,24 +232,34 @@ std::vector<Ray> rays_from_square(std::uint32_t side) {
   return rays;
 }
 
+// Coherent rays from a point, 128 or 32 triangles for each, or 6; and rays that have nothing in common.
 TEST_F(CountedRouting, lets_rays_go_alone_where_they_are_far_apart) {
-  for (const Path* path : supported_paths())
-    for (const bool coherent : {true, false})
+  struct Case {
+    bool coherent;
+    std::uint32_t side, cells;
+    bool alone, alone_in_flight;
+  };
+  const Case cases[] = {{true, 40, 320, true, true},
+                        {true, 80, 320, false, true},
+                        {true, 40, 70, false, false},
+                        {false, 40, 320, true, true},
+                        {false, 40, 20, false, false}};
+  for (const auto& [coherent, side, cells, alone, alone_in_flight] : cases) {
+    const std::vector<Ray> rays =
+        coherent ? rays_to_square(side, SharedApex::origin) : rays_from_square(side);
+    const Bvh bvh(square_of(cells));
+    for (const Path* path : supported_paths())
       for (const bool only_decides : {false, true}) {
-        const std::vector<Ray> rays =
-            coherent ? rays_to_square(40, SharedApex::origin) : rays_from_square(40);
-        for (const std::uint32_t cells : {coherent ? 70u : 20u, 320u}) {
-          const Bvh bvh(square_of(cells));
-          const auto cost = [&](TraversalMode mode) {
-            return counts_of(bvh, rays, only_decides, {.mode = mode, .path = path});
-          };
-          const bool alone = cells == 320 && (!coherent || flies_on(*path));
-          ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
-          EXPECT_EQ(cost(TraversalMode::automatic),
-                    cost(alone ? TraversalMode::single : TraversalMode::stream))
-              << path->name << ' ' << cells << (coherent ? " coherent" : "") << (only_decides ? " any" : "");
-        }
+        const auto cost = [&](TraversalMode mode) {
+          return counts_of(bvh, rays, only_decides, {.mode = mode, .path = path});
+        };
+        const bool is_single = flies_on(*path) ? alone_in_flight : alone;
+        ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
+        EXPECT_EQ(cost(TraversalMode::automatic),
+                  cost(is_single ? TraversalMode::single : TraversalMode::stream))
+            << path->name << ' ' << cells << (coherent ? " coherent" : "") << (only_decides ? " any" : "");
       }
+  }
 }
 
 // By what the modes cost, which is never the same. Rays begin near each other, so that they meet together.
