@@ -19,29 +19,30 @@ namespace raylanes::testing {
 namespace {
 
 // The listed ones, and those that are hard on traversals: needles, slivers, thin triangles far away.
-std::vector<std::filesystem::path> files_to_trace() {
-  std::vector<std::filesystem::path> files;
-  for (const ListedScene& scene : listed_scenes()) files.push_back(scene.file);
+std::vector<ListedScene> scenes_to_trace() {
+  std::vector<ListedScene> scenes = listed_scenes();
   for (const char* name :
        {"nasty_needles.obj", "nasty_far_thin.obj", "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"})
-    files.push_back(scenes_folder() / name);
-  return files;
+    scenes.push_back({name, scenes_folder() / name, 0});
+  return scenes;
 }
 
-class SceneOnDisk : public ::testing::TestWithParam<std::filesystem::path> {};
+class SceneOnDisk : public ::testing::TestWithParam<ListedScene> {};
 
 TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
+  const auto& [_, file, triangles] = GetParam();
   if (scenes_folder().empty())
-    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << GetParam();
-  if (!std::filesystem::exists(GetParam())) GTEST_SKIP() << "no file " << GetParam();
-  const Mesh mesh = bench::read_mesh(GetParam());
+    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no file " << file;
+  const Mesh mesh = bench::read_mesh(file);
+  EXPECT_TRUE(triangles == 0 || mesh.triangles.size() == triangles) << mesh.triangles.size();
   Box bounds = empty_box;
   for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
   const Float3 centre = raylanes::centre(bounds);
   float half = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) half = std::max(half, bounds.hi[axis] - centre[axis]);
   // About as much work for each mesh, and more for the hard ones.
-  const bool hard = GetParam().stem().string().starts_with("nasty");
+  const bool hard = file.stem().string().starts_with("nasty");
   const std::size_t tests = by_level(400'000, 3'000'000, hard ? 40'000'000 : 8'000'000);
   const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
   for (const float reach : {1.0f, 3.0f}) {
@@ -50,8 +51,8 @@ TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk, ::testing::ValuesIn(files_to_trace()), [](const auto& mesh) {
-  std::string name = mesh.param.stem().string();
+INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk, ::testing::ValuesIn(scenes_to_trace()), [](const auto& mesh) {
+  std::string name = mesh.param.file.stem().string();
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return std::to_string(mesh.index) + '_' + name;
