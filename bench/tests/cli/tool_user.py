@@ -5,6 +5,7 @@ import pathlib
 import resource
 import struct
 import subprocess
+import tempfile
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
@@ -64,3 +65,12 @@ class Tool:
     def png_size(self, name):
         header = (self.folder / name).read_bytes()[:24]
         return struct.unpack(">II", header[16:24]) if header[:8] == b"\x89PNG\r\n\x1a\n" else (0, 0)
+
+
+def status_of(test, program):
+    """The exit status of a test, which gets the tool in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        tool = Tool(str(pathlib.Path(program).resolve()), folder)
+        test(tool)
+    print(f"{tool.checks - tool.failures} of {tool.checks} checks passed")
+    return 1 if tool.failures else 0
