@@ -1,8 +1,8 @@
 """Square roots: error against time, with the front of each ISA path."""
 import math
 
-from error_text import error_text
 from plot_style import SERIES, Tooltips, legend_above, panel
+from rounds import error_text
 
 GROUPS = [('classic_', 'bit trick + 0 … 3 Newton steps', 2), ('hardware', 'hardware instruction', 1)]
 

@@ -1,4 +1,4 @@
-"""The rounds of measured rows: their quartiles, and ratios of two rows that took turns."""
+"""The rounds of measured rows: their quartiles, ratios of two rows that took turns, and how errors are written."""
 
 
 def quartiles(numbers):
@@ -28,3 +28,9 @@ def ratios(row, other):
     """The quartiles of a row's speed divided by another row's, round by round: rows of one run took turns, so noise
     that lasts longer than a round hits both."""
     return quartiles([a / b for a, b in zip(row['rounds_mrays_per_second'], other['rounds_mrays_per_second'])])
+
+
+def error_text(max_ulp):
+    """With so many digits that an error above half an ULP does not look like half an ULP."""
+    return next(text for text in (f'{max_ulp:.{digits}g}' for digits in range(4, 18))
+                if (float(text) > 0.5) == (max_ulp > 0.5))

@@ -95,49 +95,45 @@ def roots_chart(results):
     return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
 
 
-def set_ratios_by_size(axes, sizes):
-    """Ratios from zero on with a line at one, against sizes that grow by factors."""
+def ratios_by_size(sizes, lines, labels, place, title):
+    """A chart of ratios, from zero on with a line at one, against sizes that grow by factors; lines are (words of its
+    comment, label, ratios), labels those of the axes."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
+    shown = []
+    for (colour, marker), (words, label, ratios) in zip(plot_style.SERIES, lines):
+        axes.plot(sizes, ratios, marker=marker, color=colour, markersize=4, linewidth=1.2, label=label)
+        shown += [*words, *(f'{ratio:.2f}' for ratio in ratios)]
+    if 'instruction' in labels[1]:
+        axes.annotate('the instruction', (sizes[0], 1), (0, -10), textcoords='offset points', fontsize=8)
     axes.axhline(1, linestyle='--', color=INK, linewidth=1)
     axes.set_xscale('log')
     axes.set_xticks(sizes, [f'{n:,}' for n in sizes], fontsize=8)
     axes.minorticks_off()
     axes.set_ylim(bottom=0)
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    axes.legend(fontsize=8, loc=place)
+    return finished(figure, title, ' '.join(shown))
 
 
 def lengths_chart(results):
     """How many times as fast as the instruction roots are, against the length of the array."""
-    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
-    shown = []
-    for (colour, marker), way in zip(plot_style.SERIES, ROOT_WAYS[1:-1]):
-        gains = root_gains(results, way)
-        axes.plot(ROOT_LENGTHS, gains, marker=marker, color=colour, markersize=4, linewidth=1.2,
-                  label=way.replace('_', ' '))
-        shown += [way, *(f'{gain:.2f}' for gain in gains)]
-    axes.annotate('the instruction', (ROOT_LENGTHS[0], 1), (0, -10), textcoords='offset points', fontsize=8)
-    set_ratios_by_size(axes, ROOT_LENGTHS)
-    axes.set_xlabel('floats in the array; in and out take 8 bytes each')
-    axes.set_ylabel('speed, × instruction')
-    axes.legend(fontsize=8, loc='upper right')
-    return finished(figure, 'Square roots: gain over the instruction by length of the array', ' '.join(shown))
+    lines = [([way], way.replace('_', ' '), root_gains(results, way)) for way in ROOT_WAYS[1:-1]]
+    labels = 'floats in the array; in and out take 8 bytes each', 'speed, × instruction'
+    return ratios_by_size(ROOT_LENGTHS, lines, labels, 'upper right',
+                          'Square roots: gain over the instruction by length of the array')
 
 
 def sizes_chart(results):
     """Speed of batches and of calls by Embree's best, against the number of triangles."""
-    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
     rows = results.where(scene='dragon', pixels=1 << 20)
-    triangles, shown = sorted({row['triangles'] for row in rows}), []
-    ways = [(rays, mode) for mode in ('automatic', 'call') for rays in ('primary', 'diffuse')]
-    for (colour, marker), (rays, mode) in zip(plot_style.SERIES, ways):
-        ratio_of = {row['triangles']: row['ratio'] for row in rows if (row['rays'], row['mode']) == (rays, mode)}
-        ratios = [ratio_of[n] for n in triangles]
-        axes.plot(triangles, ratios, marker=marker, color=colour, markersize=4, linewidth=1.2,
-                  label=f"{KINDS[rays]}, {'a batch' if mode == 'automatic' else 'one ray a call'}")
-        shown += [rays, mode, *(f'{ratio:.2f}' for ratio in ratios)]
-    set_ratios_by_size(axes, triangles)
-    axes.set_xlabel('triangles')
-    axes.set_ylabel('speed, × Embree')
-    axes.legend(fontsize=8, loc='lower left')
-    return finished(figure, 'Rays through one mesh cut finer and finer: speed beside Embree', ' '.join(shown))
+    triangles, lines = sorted({row['triangles'] for row in rows}), []
+    for mode, name in (('automatic', 'a batch'), ('call', 'one ray a call')):
+        for rays in ('primary', 'diffuse'):
+            ratio_of = {row['triangles']: row['ratio'] for row in rows if (row['rays'], row['mode']) == (rays, mode)}
+            lines.append(([rays, mode], f'{KINDS[rays]}, {name}', [ratio_of[n] for n in triangles]))
+    return ratios_by_size(triangles, lines, ('triangles', 'speed, × Embree'), 'lower left',
+                          'Rays through one mesh cut finer and finer: speed beside Embree')
 
 
 def cliffs_chart(results):

@@ -1,8 +1,8 @@
 """The tables of square roots in docs/figures.md."""
 import math
 
-from error_text import error_text
 from results import table
+from rounds import error_text
 
 ACCURACIES = ('correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11')
 ROOT_SHARES = (0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0)
