@@ -32,23 +32,4 @@ Mesh with_holes(const Mesh& mesh, std::size_t holes) {
   return open;
 }
 
-Mesh in_pieces(const Mesh& mesh) {
-  SplitMix random(3);
-  const double most = 1e-4 * diagonal_of(mesh);
-  Mesh pieces;
-  for (const Index3& triangle : mesh.triangles) {
-    double offset[3];
-    for (double& x : offset) x = (2 * random.uniform() - 1) * most;
-    const auto first = static_cast<std::uint32_t>(pieces.vertices.size());
-    for (const std::uint32_t corner : triangle) {
-      Float3 moved;
-      for (std::size_t k = 0; k < 3; ++k)
-        moved[k] = static_cast<float>(static_cast<double>(mesh.vertices[corner][k]) + offset[k]);
-      pieces.vertices.push_back(moved);
-    }
-    pieces.triangles.push_back({first, first + 1, first + 2});
-  }
-  return pieces;
-}
-
 }  // namespace raylanes::bench

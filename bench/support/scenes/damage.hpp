@@ -1,4 +1,4 @@
-// Meshes as scans and downloads are: with holes, or in pieces.
+// Meshes as scans and downloads are: with holes.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,5 @@ namespace raylanes::bench {
 // Without the triangles whose middle is within a fiftieth of the diagonal of one of so many corners of the mesh, chosen
 // from a seed.
 Mesh with_holes(const Mesh& mesh, std::size_t holes);
-
-// Each triangle for itself, moved by up to 10^-4 of the diagonal along each axis, from a seed.
-Mesh in_pieces(const Mesh& mesh);
 
 }  // namespace raylanes::bench
