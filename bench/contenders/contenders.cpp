@@ -8,8 +8,7 @@ namespace {
 
 Contender packed_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode, bool coherent) {
   const auto timed = [&embree, mode, coherent](const RaySet& set, Answers& answers) {
-    return set.query == Query::closest ? embree.closest_packed(mode, coherent, set.rays, answers.hits)
-                                       : embree.any_packed(mode, coherent, set.rays, answers.occluded);
+    return embree.trace_packed(mode, coherent, set, answers);
   };
   return {std::move(name), timed, timed};
 }
@@ -18,10 +17,7 @@ Contender packed_contender(std::string name, const EmbreeContender& embree, Embr
 Contender converting_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode,
                                bool coherent) {
   return {std::move(name), [&embree, mode, coherent](const RaySet& set, Answers& answers) {
-            if (set.query == Query::closest)
-              embree.closest(mode, coherent, set.rays, answers.hits);
-            else
-              embree.any(mode, coherent, set.rays, answers.occluded);
+            embree.trace(mode, coherent, set, answers);
           }};
 }
 

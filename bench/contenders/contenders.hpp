@@ -2,17 +2,23 @@
 // the user's hits; conversion is part of the work, but for packed contenders.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <raylanes/bvh.hpp>
 
 #include "embree/embree_contender.hpp"
-#include "tree_family.hpp"
 #include "workload.hpp"
 
 namespace raylanes::bench {
+
+// The kinds of trees that the tool builds.
+enum class TreeFamily : std::uint8_t { bvh, kdtree, automatic };
+inline constexpr std::array<std::string_view, 3> tree_family_names{"bvh", "kdtree", "auto"};
 
 // The answers to a ray set: hits for a closest query, flags for any.
 struct Answers {

@@ -1,12 +1,68 @@
-// Other libraries that find closest points: on the same mesh, one point after the other, as their manuals show it.
+// Other libraries on the same mesh, one ray or point a call, as their manuals show it: Embree with triangles of the
+// caller's own and for closest points, CGAL's trees (Alliez, Tayeb, Wormser 2009).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/queries.hpp>
+
+#include "../support/oracles/exact_doubles.hpp"
 
 namespace raylanes::bench {
+
+// CGAL with the kernel of exact predicates and inexact constructions.
+class CgalContender {
+ public:
+  CgalContender(std::span<const Float3> vertices, std::span<const Index3> triangles);
+  ~CgalContender();
+
+  // How many intersections of each ray from its origin to infinity all_intersections() finds, which also constructs the
+  // points; tmin and tmax are not asked.
+  void count_hits(std::span<const Ray> rays, std::span<std::uint32_t> counts) const;
+  // Side_of_triangle_mesh; the mesh is closed and oriented. Throws std::invalid_argument if it is not.
+  void locate(std::span<const Float3> points, std::span<Location> locations) const;
+
+ private:
+  struct Trees;
+  std::unique_ptr<Trees> trees_;
+};
+
+// Embree over triangles of doubles in a callback, as programs for transport of radiation use it: boxes of floats are
+// widened, and each triangle that Embree offers is tested in doubles, by the edges' signs in a fixed order of their
+// ends (Platis, Theoharis 2003). Subnormal numbers count as zero meanwhile, as Embree's manual asks.
+class EmbreeDoubles {
+ public:
+  // Boxes are widened by 2^-22 of the largest coordinate, which is what rounding an origin there takes. The mesh must
+  // outlive it. Throws std::runtime_error where this build has no Embree, or Embree reports an error.
+  explicit EmbreeDoubles(const oracle::DoubleMesh& mesh);
+  ~EmbreeDoubles();
+
+  // For the same number of rays and results.
+  void closest(std::span<const RayD> rays, std::span<HitD> hits) const;
+  void occluded(std::span<const RayD> rays, std::span<std::uint8_t> occluded) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+// CGAL's AABB_tree with exact predicates and inexact constructions: first_intersected_primitive().
+// Rays begin at their origin and have no end.
+class CgalDoubles {
+ public:
+  explicit CgalDoubles(const oracle::DoubleMesh& mesh);
+  ~CgalDoubles();
+
+  // The primitives of hits are those that are nearest by CGAL; their other numbers are not set.
+  void closest(std::span<const RayD> rays, std::span<HitD> hits) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
 
 // Embree's rtcPointQuery with a scalar callback for each primitive, in floats (Ericson 2005, 5.1.5). As Embree's manual
 // asks, subnormal numbers count as zero meanwhile; MXCSR is as before afterwards.

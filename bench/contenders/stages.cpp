@@ -147,10 +147,10 @@ struct Contestant {
   std::vector<Stages> rounds = {};
 };
 
-double median(const std::vector<Stages>& rounds, double Stages::*stage) {
+Quartiles quartiles(const std::vector<Stages>& rounds, double Stages::*stage) {
   std::vector<double> seconds;
   for (const Stages& round : rounds) seconds.push_back(round.*stage);
-  return quartiles_of(seconds).median;
+  return quartiles_of(seconds);
 }
 Quartiles ratio(const Contestant& ours, const Contestant& theirs, double Stages::*stage) {
   std::vector<double> ratios;
@@ -162,15 +162,13 @@ Quartiles ratio(const Contestant& ours, const Contestant& theirs, double Stages:
 StageRow row_of(const Contestant& of) {
   StageRow row;
   row.contender = of.contender, row.builder = of.builder;
-  std::vector<double> builds;
-  for (const Stages& round : of.rounds) builds.push_back(round.build);
-  const Quartiles build = quartiles_of(builds);
+  const Quartiles build = quartiles(of.rounds, &Stages::build);
   const Stages& last = of.rounds.back();
   row.build_seconds = build.median, row.spread = (build.third - build.first) / build.median;
   row.build_peak = last.build_peak, row.held = last.held;
-  if (last.refit > 0) row.refit_seconds = median(of.rounds, &Stages::refit);
-  if (last.save > 0) row.save_seconds = median(of.rounds, &Stages::save);
-  if (last.load > 0) row.load_seconds = median(of.rounds, &Stages::load);
+  if (last.refit > 0) row.refit_seconds = quartiles(of.rounds, &Stages::refit).median;
+  if (last.save > 0) row.save_seconds = quartiles(of.rounds, &Stages::save).median;
+  if (last.load > 0) row.load_seconds = quartiles(of.rounds, &Stages::load).median;
   row.load_peak = last.load_peak, row.file_bytes = last.file_bytes;
   return row;
 }

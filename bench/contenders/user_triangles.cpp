@@ -1,5 +1,3 @@
-#include "user_triangles.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstddef>
@@ -7,6 +5,7 @@
 #include <raylanes/cpu_features.hpp>
 
 #include "../../accel/mesh/bounding_boxes.hpp"
+#include "scene_contenders.hpp"
 
 namespace raylanes::bench {
 namespace {

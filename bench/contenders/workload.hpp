@@ -9,7 +9,6 @@
 
 #include <raylanes/bvh.hpp>
 
-#include "../support/rays/pixel_order.hpp"
 #include "../support/rays/ray_sets.hpp"
 
 namespace raylanes::bench {

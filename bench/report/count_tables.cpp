@@ -1,6 +1,7 @@
 #include "count_tables.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 namespace raylanes::bench {
@@ -53,6 +54,38 @@ RowTable counts_of(const std::vector<TraceRow>& rows) {
     table.add("tests/hit", "", row.counted->triangle_tests_per_hit());
     for (const CounterName& name : counter_names)
       table.add(name.column + std::string("/ray"), "", row.counted->per_ray(name.counter));
+  }
+  return table;
+}
+
+RowTable means_of(const std::vector<TraceRow>& rows) {
+  struct Ratios {
+    std::vector<double> to_best, to_single, to_robust;
+  };
+  std::map<std::vector<std::string>, Ratios> named;  // by the cells that name a row
+  bool is_of_several = false;
+  for (const TraceRow& row : rows) {
+    if (!row.ratio || !row.test) continue;
+    Ratios& ratios = named[{name_of(row.rays), row.path,
+                            std::string(triangle_test_names[static_cast<std::size_t>(*row.test)]), row.mode,
+                            row.batch == 0 ? "" : std::to_string(row.batch), row.build}];
+    is_of_several = is_of_several || !ratios.to_best.empty();
+    ratios.to_best.push_back(row.ratio->median);
+    ratios.to_single.push_back(row.ratio_to_single->median);
+    ratios.to_robust.push_back(row.ratio_to_robust->median);
+  }
+  RowTable table;
+  constexpr const char* columns[] = {"rays", "path", "test", "mode", "batch"};
+  for (const auto& [name, ratios] : named) {
+    if (!is_of_several) break;
+    table.begin();
+    for (std::size_t i = 0; i < std::size(columns); ++i) table.add(columns[i], "", name[i]);
+    table.add("scenes", "", ratios.to_best.size())
+        .add("× Embree", "", geometric_mean(ratios.to_best))
+        .add("min", "", *std::min_element(ratios.to_best.begin(), ratios.to_best.end()))
+        .add("× single", "", geometric_mean(ratios.to_single))
+        .add("× robust", "", geometric_mean(ratios.to_robust))
+        .add("build", "", name.back());
   }
   return table;
 }

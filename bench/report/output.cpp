@@ -60,8 +60,6 @@ double load_average() {
   return getloadavg(&load, 1) == 1 ? load : -1.0;
 }
 
-}  // namespace
-
 Json machine_description() {
   return {{"processor", processor_name()}, {"cores", std::thread::hardware_concurrency()},
           {"system", operating_system()},  {"compiler", compiler()},
@@ -69,6 +67,8 @@ Json machine_description() {
           {"commit", build_facts.commit},  {"build_type", build_facts.build_type},
           {"flags", build_facts.flags},    {"load_average", load_average()}};
 }
+
+}  // namespace
 
 std::string machine_line() {
   return processor_name() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
@@ -105,6 +105,12 @@ std::string significant(double x, int digits) {
 
 std::string milliseconds(double seconds) {
   return significant(1e3 * seconds, 3);
+}
+
+std::string hexadecimal(const char* format, unsigned long long bits) {
+  char text[24];
+  std::snprintf(text, sizeof text, format, bits);
+  return text;
 }
 
 }  // namespace raylanes::bench

@@ -10,10 +10,7 @@ namespace raylanes::bench {
 
 using Json = nlohmann::ordered_json;
 
-// Processor, cores, compiler, version, date, commit, build type, flags, load: what a figure means nothing without.
-Json machine_description();
-
-// One line of the same.
+// One line: processor, cores, compiler and date, which a figure means nothing without. JSON has more.
 std::string machine_line();
 
 // Writes {"schema_version": 1, "machine": …, "rows": rows} by write_whole_file(); what is no UTF-8 in names becomes
@@ -29,5 +26,6 @@ void check_standard_output();
 // A number with `digits` significant digits, in plain notation where that is short.
 std::string significant(double x, int digits);
 std::string milliseconds(double seconds);
+std::string hexadecimal(const char* format, unsigned long long bits);
 
 }  // namespace raylanes::bench

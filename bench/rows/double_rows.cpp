@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "../contenders/double_contenders.hpp"
+#include "../contenders/rivals.hpp"
 #include "../support/rays/aim.hpp"
 
 namespace raylanes::bench {
@@ -62,10 +62,15 @@ DoubleSet towards_edges(const oracle::DoubleMesh& mesh, const BoxD& bounds, std:
   return set;
 }
 
-struct DoubleAnswers {
-  std::vector<HitD> hits;
+template <class OneHit>
+struct AnswersIn {
+  explicit AnswersIn(const DoubleSet& set)
+      : hits(set.query == Query::closest ? set.rays.size() : 0),
+        occluded(set.query == Query::closest ? 0 : set.rays.size()) {}
+  std::vector<OneHit> hits;
   std::vector<std::uint8_t> occluded;
 };
+using DoubleAnswers = AnswersIn<HitD>;
 
 struct Work {
   DoubleRow row;
@@ -80,37 +85,14 @@ class Race {
       : mesh_(mesh), tree_(tree), set_(set) {}
 
   void add_ours(const Path* path) {
-    const TraceOptionsD options{.path = path};
-    add("raylanes", path->name, "call", [this, options](DoubleAnswers& to) {
-      for (std::size_t i = 0; i < to.hits.size(); ++i) to.hits[i] = tree_.closest(set_.rays[i], options);
-      for (std::size_t i = 0; i < to.occluded.size(); ++i)
-        to.occluded[i] = tree_.occluded(set_.rays[i], options) ? 1 : 0;
-    });
-    add("raylanes", path->name, "batch", [this, options](DoubleAnswers& to) {
-      if (set_.query == Query::closest)
-        tree_.closest(set_.rays, to.hits, options);
-      else
-        tree_.occluded(set_.rays, to.occluded, options);
-    });
+    add_tree("raylanes", tree_, set_.rays, TraceOptionsD{.path = path},
+             [](DoubleAnswers& to) -> DoubleAnswers& { return to; });
   }
   // The same rays through a tree of floats, whose answers nobody judges here.
   void add_floats(const Bvh& floats, const Path* path) {
-    const TraceOptions options{.path = path};
-    const auto hits = std::make_shared<std::vector<Hit>>(set_.floats.size());
-    const auto occluded = std::make_shared<std::vector<std::uint8_t>>(set_.floats.size());
-    add("floats", path->name, "call", [=, this, &floats](DoubleAnswers&) {
-      for (std::size_t i = 0; i < set_.floats.size(); ++i)
-        if (set_.query == Query::closest)
-          (*hits)[i] = floats.closest(set_.floats[i], options);
-        else
-          (*occluded)[i] = floats.occluded(set_.floats[i], options) ? 1 : 0;
-    });
-    add("floats", path->name, "batch", [=, this, &floats](DoubleAnswers&) {
-      if (set_.query == Query::closest)
-        floats.closest(set_.floats, *hits, options);
-      else
-        floats.occluded(set_.floats, *occluded, options);
-    });
+    const auto answers = std::make_shared<AnswersIn<Hit>>(set_);
+    add_tree("floats", floats, set_.floats, TraceOptions{.path = path},
+             [answers](DoubleAnswers&) -> AnswersIn<Hit>& { return *answers; });
   }
   void add_embree(const EmbreeDoubles& embree) {
     add("embree", "best", "call", [this, &embree](DoubleAnswers& to) {
@@ -146,12 +128,28 @@ class Race {
   }
 
  private:
+  // A call for each ray, and a batch. answers_in() picks the answers in the numbers of the tree.
+  template <class Tree, class Rays, class Options, class AnswersOf>
+  void add_tree(const char* contender, const Tree& tree, const Rays& rays, const Options& options,
+                const AnswersOf& answers_in) {
+    add(contender, options.path->name, "call", [=, &tree, &rays](DoubleAnswers& all) {
+      auto& to = answers_in(all);
+      for (std::size_t i = 0; i < to.hits.size(); ++i) to.hits[i] = tree.closest(rays[i], options);
+      for (std::size_t i = 0; i < to.occluded.size(); ++i)
+        to.occluded[i] = tree.occluded(rays[i], options) ? 1 : 0;
+    });
+    add(contender, options.path->name, "batch", [=, this, &tree, &rays](DoubleAnswers& all) {
+      auto& to = answers_in(all);
+      if (set_.query == Query::closest)
+        tree.closest(rays, to.hits, options);
+      else
+        tree.occluded(rays, to.occluded, options);
+    });
+  }
   void add(const std::string& contender, const std::string& path, const std::string& mode,
            const std::function<void(DoubleAnswers&)>& trace) {
     const std::size_t count = set_.rays.size();
-    const bool is_closest = set_.query == Query::closest;
-    auto answers = std::make_shared<DoubleAnswers>(DoubleAnswers{
-        std::vector<HitD>(is_closest ? count : 0), std::vector<std::uint8_t>(is_closest ? 0 : count)});
+    const auto answers = std::make_shared<DoubleAnswers>(set_);
     works_.push_back(
         {{.rays = set_.name, .contender = contender, .path = path, .mode = mode, .ray_count = count},
          answers,

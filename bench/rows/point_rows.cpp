@@ -10,7 +10,6 @@
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../contenders/cgal_contender.hpp"
 #include "../contenders/fast_winding.hpp"
 #include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_crossings.hpp"

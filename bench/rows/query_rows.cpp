@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
-#include "../contenders/cgal_contender.hpp"
 #include "../contenders/embree/embree_contender.hpp"
+#include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_crossings.hpp"
 
 namespace raylanes::bench {

@@ -43,6 +43,9 @@ constexpr auto nodes = &Document::nodes, primitive = &Document::primitive,
                positions = &Document::position_accessor, indices = &Document::index_accessor,
                index_view = &Document::index_view, buffer = &Document::buffer;
 
+const std::string three = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")",
+                  plain = R"("attributes":{"POSITION":0})";
+
 // The text of the document with some parts replaced.
 using Changes = std::vector<std::pair<std::string Document::*, std::string>>;
 std::string with(const Changes& changes) {
@@ -73,8 +76,6 @@ class Gltf : public MeshReader {
 };
 
 TEST_F(Gltf, strips_fans_lists_sizes_of_indices_and_nodes) {
-  const std::string three = R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")",
-                    plain = R"("attributes":{"POSITION":0})";
   struct Good {
     Changes changes;
     std::vector<Float3> vertices;
@@ -106,9 +107,7 @@ TEST_F(Gltf, strips_fans_lists_sizes_of_indices_and_nodes) {
 }
 
 TEST_F(Gltf, buffers_inside_and_in_glb) {
-  Changes changes{{primitive, R"("attributes":{"POSITION":0})"},
-                  {positions, R"("bufferView":0,"componentType":5126,"count":3,"type":"VEC3")"},
-                  {buffer, R"("byteLength":56)"}};
+  Changes changes{{primitive, plain}, {positions, three}, {buffer, R"("byteLength":56)"}};
   const std::string whole = glb(with(changes), buffer_bytes());
   expect_triangles("a.glb", whole, corners, {{0, 1, 2}});
   for (std::size_t size = 0; size < whole.size(); ++size)
@@ -119,26 +118,15 @@ TEST_F(Gltf, buffers_inside_and_in_glb) {
   expect_triangles("b.gltf", with(changes), corners, {{0, 1, 2}});
 }
 
-TEST_F(Gltf, nodes_are_trees_of_bounded_depth) {
+TEST_F(Gltf, refuses_values_of_the_wrong_kind_or_beyond_their_buffers_and_depth) {
   // 20 levels of two children each that are the same node: a million meshes from a kilobyte.
   std::string shared = "[", deep = "[";
   for (int i = 1; i <= 20; ++i)
     shared += R"({"children":[)" + std::to_string(i) + "," + std::to_string(i) + "]},";
   for (int i = 1; i <= 100000; ++i) deep += R"({"children":[)" + std::to_string(i) + "]},";
-  refuse_each({{nodes, R"([{"children":[1,1]},{"mesh":0}])", "nodes[1]: is reached twice"},
-               {nodes, R"([{"children":[0],"mesh":0}])", "nodes[0]: is reached twice"},
-               {nodes, shared + R"({"mesh":0}])", "is reached twice"},
-               {nodes, deep + R"({"mesh":0}])", "nodes[128]: is deeper than 128 nodes"},
-               {nodes, R"([{"children":[7]}])", "node 7 is out of range, there are 1"}});
-}
-
-TEST_F(Gltf, nested_text_is_refused_wherever_it_is) {
   for (const std::string key : {"extras", "extensions", "nodes", "anything"})
     expect_errors({{"a.gltf", R"({"asset":{"version":"2.0"},")" + key + "\":" + std::string(200000, '['),
                     "nested deeper"}});
-}
-
-TEST_F(Gltf, values_of_the_wrong_kind_or_beyond_their_buffers) {
   for (const std::string children : {"1", "[1.5]", "[-1]", "[\"1\"]", "[4294967297]", "{}", "null"})
     refuse_each({{nodes, R"([{"children":)" + children + "},{\"mesh\":0}]",
                   "nodes[0].children: allowed is a list of whole numbers"}});
@@ -147,19 +135,23 @@ TEST_F(Gltf, values_of_the_wrong_kind_or_beyond_their_buffers) {
   };
   const std::string whole = R"("bufferView":0,)", huge = "9007199254740992",
                     beyond = "do not fit their buffer";
-  const Document plain;
+  const Document whole_file;
   refuse_each({
+      {nodes, R"([{"children":[1,1]},{"mesh":0}])", "nodes[1]: is reached twice"},
+      {nodes, R"([{"children":[0],"mesh":0}])", "nodes[0]: is reached twice"},
+      {nodes, shared + R"({"mesh":0}])", "is reached twice"},
+      {nodes, deep + R"({"mesh":0}])", "nodes[128]: is deeper than 128 nodes"},
+      {nodes, R"([{"children":[7]}])", "node 7 is out of range, there are 1"},
       {nodes, R"([{"mesh":0.5}])", "nodes[0].mesh: allowed is a whole number"},
       {nodes, R"([{"mesh":0,"scale":[1,2]}])", "nodes[0].scale: allowed are 3 numbers"},
       {nodes, R"([{"mesh":0,"matrix":[1,2,3]}])", "nodes[0].matrix: allowed are 16 numbers"},
       {nodes, R"([{"mesh":3}])", "mesh 3 is out of range, there are 1"},
       {primitive, R"("indices":1)", "meshes[0].primitives[0]: has no attributes"},
       {primitive, R"("attributes":{"NORMAL":0})", "has no attribute POSITION"},
-      {primitive, R"("attributes":{"POSITION":0},"mode":7)", "mode 7, allowed are 0 to 6"},
-      {primitive, R"("attributes":{"POSITION":0})", "has 4 corners, allowed are multiples of 3"},
+      {primitive, plain + R"(,"mode":7)", "mode 7, allowed are 0 to 6"},
+      {primitive, plain, "has 4 corners, allowed are multiples of 3"},
       {primitive, R"("attributes":{"POSITION":1})", "allowed positions are three floats"},
-      {primitive, R"("attributes":{"POSITION":0},"indices":0)",
-       "allowed indices are unsigned bytes, shorts and ints"},
+      {primitive, plain + R"(,"indices":0)", "allowed indices are unsigned bytes, shorts and ints"},
       {positions, accessor(whole, "5"), beyond},
       {positions, accessor(whole + R"("byteOffset":1,)", "4"), beyond},
       {positions, accessor(whole + R"("byteOffset":)" + huge + ",", "1"), beyond},
@@ -170,10 +162,10 @@ TEST_F(Gltf, values_of_the_wrong_kind_or_beyond_their_buffers) {
       {index_view, R"("buffer":0,"byteOffset":)" + huge + R"(,"byteLength":)" + huge, beyond},
       {index_view, R"("buffer":1,"byteLength":8)", "buffer 1 is out of range"},
       // Data that is not where plain numbers are.
-      {positions, plain.position_accessor + R"(,"sparse":{"count":1})", "[0].sparse"},
-      {primitive, plain.primitive + R"(,"extensions":{"KHR_draco_mesh_compression":{}})",
+      {positions, whole_file.position_accessor + R"(,"sparse":{"count":1})", "[0].sparse"},
+      {primitive, whole_file.primitive + R"(,"extensions":{"KHR_draco_mesh_compression":{}})",
        "uses KHR_draco_mesh_compression"},
-      {index_view, plain.index_view + R"(,"extensions":{"EXT_meshopt_compression":{}})",
+      {index_view, whole_file.index_view + R"(,"extensions":{"EXT_meshopt_compression":{}})",
        "uses EXT_meshopt_compression"},
   });
 }

@@ -14,4 +14,8 @@ void add_points_command(CLI::App& tool);
 void add_trees_command(CLI::App& tool);
 void add_report_command(CLI::App& tool);
 
+// Gives the tool and its commands their form of help, the groups of their options, and footers with two examples and
+// the exit statuses. Called when all commands are there.
+void set_help(CLI::App& tool);
+
 }  // namespace raylanes::bench

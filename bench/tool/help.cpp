@@ -1,5 +1,3 @@
-#include "help.hpp"
-
 #include <algorithm>
 #include <memory>
 #include <sstream>
@@ -8,6 +6,7 @@
 
 #include "../report/exits.hpp"
 #include "../report/table_format.hpp"
+#include "commands.hpp"
 
 namespace raylanes::bench {
 namespace {

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
@@ -47,18 +46,12 @@ void run(const SharedOptions& options) {
   options.finish(table);
 }
 
-std::string hexadecimal(std::uint64_t hash) {
-  char text[19];
-  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 void add(RowTable& table, const VerifiedScene& scene) {
   table.begin({{"same_mesh", scene.same_mesh}});
   table.add("scene", "scene", scene.scene)
       .add("path", "path", scene.path->name)
       .add("rows", "rows", scene.rows)
-      .add("answers", "answers", hexadecimal(scene.answers))
+      .add("answers", "answers", hexadecimal("0x%016llx", scene.answers))
       .add("as recorded", "same_answers", scene.same_answers,
            scene.same_mesh && scene.same_answers ? "yes"
            : scene.same_mesh                     ? "no"

@@ -7,7 +7,6 @@
 #include "../report/row_table.hpp"
 #include "../rows/point_rows.hpp"
 #include "../support/pictures/image.hpp"
-#include "../support/pictures/slice.hpp"
 #include "../support/readers/printable.hpp"
 #include "../support/scenes/damage.hpp"
 #include "commands.hpp"

@@ -3,7 +3,6 @@
 #include <memory>
 #include <set>
 
-#include "../rows/roots/double_root_rows.hpp"
 #include "../rows/roots/root_rows.hpp"
 #include "../support/roots/root_judge.hpp"
 #include "../support/rulers/progress.hpp"

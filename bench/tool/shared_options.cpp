@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
 #include <stdexcept>
 
 #include "../report/exits.hpp"
+#include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "../support/scenes/subdivision.hpp"
 #include "number_options.hpp"
@@ -160,8 +162,10 @@ std::filesystem::path SharedOptions::image_of(const std::string& scene) const {
   return file.parent_path() / (file.stem().string() + "-" + file_name_of(scene) + file.extension().string());
 }
 
-std::filesystem::path SharedOptions::heatmap_of(const std::string& scene) const {
-  return std::filesystem::path(heatmap) / (file_name_of(scene) + ".png");
+void SharedOptions::write_heatmap(const std::string& scene, const HeatPicture& map) const {
+  const std::filesystem::path file = std::filesystem::path(heatmap) / (file_name_of(scene) + ".png");
+  write_png(file, map.width, map.height, map.rgb);
+  std::cout << "heat map: " << printable(file.string()) << std::endl;
 }
 
 void SharedOptions::check_output(const RowTable& example) const {

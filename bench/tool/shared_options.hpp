@@ -15,6 +15,7 @@
 #include "../contenders/workload.hpp"
 #include "../report/row_table.hpp"
 #include "../report/table_format.hpp"
+#include "../support/pictures/heatmap.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"
 #include "../support/scenes/procedural.hpp"
 
@@ -52,8 +53,8 @@ struct SharedOptions {
   Scene load(const std::string& name) const;
   // FILE of --image for one scene, FILE-NAME for each of several.
   std::filesystem::path image_of(const std::string& scene) const;
-  // DIR/NAME.png of --heatmap. No name of a scene leads to another folder.
-  std::filesystem::path heatmap_of(const std::string& scene) const;
+  // Writes DIR/NAME.png of --heatmap. No name of a scene leads to another folder.
+  void write_heatmap(const std::string& scene, const HeatPicture& map) const;
   // Throws std::invalid_argument unless the table of the command, with one row of any values, has all --columns, and
   // unless --json and --format leave standard output to one of them. Called before anything is measured.
   void check_output(const RowTable& example) const;

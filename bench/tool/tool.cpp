@@ -11,7 +11,6 @@
 #include "../report/output.hpp"
 #include "../support/readers/printable.hpp"
 #include "commands.hpp"
-#include "help.hpp"
 
 namespace {
 

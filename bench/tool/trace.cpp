@@ -10,7 +10,6 @@
 #include "../contenders/trace/trace_scene.hpp"
 #include "../report/count_tables.hpp"
 #include "../report/row_table.hpp"
-#include "../report/trace_means.hpp"
 #include "../rows/double_rows.hpp"
 #include "../rows/query_rows.hpp"
 #include "../support/pictures/heatmap.hpp"
@@ -178,14 +177,10 @@ void write_pictures(const TraceCommandOptions& options, const SceneTraceOptions&
     write_png(file, parsed.width, parsed.height, traced.picture);
     std::cout << "picture: " << printable(file.string()) << std::endl;
   }
-  if (!options.heatmap.empty()) {
-    const std::filesystem::path file = options.heatmap_of(traced.scene.name);
-    const HeatRow rows[] = {{"triangle tests", {{traced.build, traced.pixels.triangles}}},
-                            {"box tests", {{traced.build, traced.pixels.boxes}}}};
-    const HeatPicture map = heatmap(rows, parsed.width, parsed.height);
-    write_png(file, map.width, map.height, map.rgb);
-    std::cout << "heat map: " << printable(file.string()) << std::endl;
-  }
+  if (options.heatmap.empty()) return;
+  const HeatRow rows[] = {{"triangle tests", {{traced.build, traced.pixels.triangles}}},
+                          {"box tests", {{traced.build, traced.pixels.boxes}}}};
+  options.write_heatmap(traced.scene.name, heatmap(rows, parsed.width, parsed.height));
 }
 
 void add(RowTable& table, const Scene& scene, const QueryRow& row) {
@@ -269,7 +264,7 @@ void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& par
   any.rows[0].counted.emplace();
   add(example, parsed, any);
   options.check_output(example);
-  TraceMeans means;
+  std::vector<TraceRow> all;
   bool sound = true;
   std::cout << machine_line() << '\n';
   for (const std::string& name : options.scenes) {
@@ -282,10 +277,13 @@ void run_traces(const TraceCommandOptions& options, const SceneTraceOptions& par
     if (parsed.against_embree) std::cout << embree_note() << '\n';
     std::cout << traced.verdict << std::endl;
     sound = sound && traced.sound;
-    means.add(traced.rows);
+    all.insert(all.end(), traced.rows.begin(), traced.rows.end());
     write_pictures(options, parsed, traced);
   }
-  means.print(options.columns);
+  if (RowTable means = means_of(all); !means.rows().empty()) {
+    std::cout << "\ngeometric means over the scenes of the ratios to Embree, and the smallest ratio\n";
+    means.print(options.columns);
+  }
   options.finish(table, sound ? "" : "trace: answers differ where they must not, see above");
 }
 

@@ -8,8 +8,6 @@
 #include "../report/count_tables.hpp"
 #include "../report/row_table.hpp"
 #include "../rows/regret.hpp"
-#include "../support/pictures/image.hpp"
-#include "../support/readers/printable.hpp"
 #include "commands.hpp"
 #include "number_options.hpp"
 
@@ -84,14 +82,6 @@ void add(RowTable& table, const TreeRow& row, const SceneTreesOptions& options) 
                                       {"ratio_to_first", quartiles(trace.to_first)}});
 }
 
-void write_heatmap(const TreesCommandOptions& options, const Scene& scene, const SceneTreesOptions& parsed,
-                   const SceneTrees& trees) {
-  const std::filesystem::path file = options.heatmap_of(scene.name);
-  const HeatPicture map = heatmap(trees.heat, parsed.width, parsed.height);
-  write_png(file, map.width, map.height, map.rgb);
-  std::cout << "heat map: " << printable(file.string()) << std::endl;
-}
-
 void add(RowTable& table, const Scene& scene, const SceneTrees& trees, const RowTable& counts,
          const SceneTreesOptions& options) {
   for (const TreeRow& row : trees.rows) {
@@ -134,7 +124,8 @@ void run_builders(const TreesCommandOptions& options) {
                                        : "triangle tests per ray; × 1st: divided by the first tree's\n");
     counts.print(options.columns);
     std::cout << trees.verdict << std::endl;
-    if (!options.heatmap.empty()) write_heatmap(options, scene, parsed, trees);
+    if (!options.heatmap.empty())
+      options.write_heatmap(scene.name, heatmap(trees.heat, parsed.width, parsed.height));
     sound = sound && trees.sound;
   }
   if (parsed.against_embree) std::cout << embree_note() << '\n';

@@ -10,9 +10,11 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "embree_queries.hpp"
-#include "subnormals_are_zero.hpp"
+#include "../contenders.hpp"
+#include "embree_layouts.hpp"
+#include "plain_scene.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -44,12 +46,6 @@ RTCDevice open_device(std::string_view isa, int threads) {
   throw std::runtime_error("Embree: no device, error " + std::to_string(code));
 }
 
-void check_sizes(std::size_t rays, std::size_t results) {
-  if (rays != results)
-    throw std::invalid_argument("Embree: " + std::to_string(rays) + " rays but room for " +
-                                std::to_string(results) + " results, both must be equal");
-}
-
 template <typename T>
 void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::span<const T> items) {
   // Embree allocates this buffer itself, padded so that 16-byte loads of the last item stay inside.
@@ -75,6 +71,76 @@ std::string library_file() {
   if (function == nullptr || dladdr(function, &info) == 0 || info.dli_fname == nullptr) return "";
   std::error_code error;
   return std::filesystem::weakly_canonical(info.dli_fname, error).string();
+}
+
+RTCIntersectContext make_context(bool coherent) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+// The differences between the two queries.
+struct Closest {
+  using Result = Hit;
+  using Single = ClosestRay;
+  template <typename W>
+  using Packet = ClosestPacket<W>;
+};
+struct Any {
+  using Result = std::uint8_t;
+  using Single = AnyRay;
+  template <typename W>
+  using Packet = AnyPacket<W>;
+};
+
+// Calls with the packet of the mode and its lanes: `with.template operator()<Packet, lanes>()`.
+template <typename Query, typename With>
+void with_packet(EmbreeMode mode, const With& with) {
+  switch (mode) {
+    case EmbreeMode::single:
+      return with.template operator()<typename Query::Single, 1>();
+    case EmbreeMode::packet4:
+      return with.template operator()<typename Query::template Packet<Width4>, 4>();
+    case EmbreeMode::packet8:
+      return with.template operator()<typename Query::template Packet<Width8>, 8>();
+    case EmbreeMode::packet16:
+      return with.template operator()<typename Query::template Packet<Width16>, 16>();
+  }
+}
+
+template <typename Query>
+void trace(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+           std::span<typename Query::Result> results) {
+  RTCIntersectContext context = make_context(coherent);
+  with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
+    for_each_packet<lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
+      Packet packet;
+      packet.lay_out(in);
+      packet.trace(scene, context);
+      packet.write(out);
+    });
+  });
+}
+
+template <typename Query>
+double trace_packed(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
+                    std::span<typename Query::Result> results) {
+  using Clock = std::chrono::steady_clock;
+  using Result = typename Query::Result;
+  RTCIntersectContext context = make_context(coherent);
+  double seconds = 0.0;
+  with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
+    std::vector<Packet> packets((rays.size() + lanes - 1) / lanes);
+    std::size_t at = 0;
+    for_each_packet<lanes>(rays, results, [&](const Ray* in, Result*) { packets[at++].lay_out(in); });
+    const Clock::time_point start = Clock::now();
+    for (Packet& packet : packets) packet.trace(scene, context);
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    at = 0;
+    for_each_packet<lanes>(rays, results, [&](const Ray*, Result* out) { packets[at++].write(out); });
+  });
+  return seconds;
 }
 
 }  // namespace
@@ -142,8 +208,6 @@ EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<con
 }
 
 EmbreeContender::~EmbreeContender() = default;
-EmbreeContender::EmbreeContender(EmbreeContender&&) noexcept = default;
-EmbreeContender& EmbreeContender::operator=(EmbreeContender&&) noexcept = default;
 
 double EmbreeContender::build_seconds() const {
   return scene_->build_seconds;
@@ -168,59 +232,60 @@ double EmbreeContender::move(std::span<const Float3> vertices) {
 }
 
 bool EmbreeContender::native(EmbreeMode mode) const {
-  const auto has = [this](RTCDeviceProperty property) {
-    return rtcGetDeviceProperty(scene_->device, property) != 0;
-  };
-  switch (mode) {
-    case EmbreeMode::single:
-      return true;
-    case EmbreeMode::packet4:
-      return has(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED);
-    case EmbreeMode::packet8:
-      return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED);
-    case EmbreeMode::packet16:
-      return has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
-  }
-  throw std::invalid_argument("Embree: unknown mode");
+  constexpr RTCDeviceProperty of_packets[] = {RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED,
+                                              RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
+                                              RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED};
+  return mode == EmbreeMode::single ||
+         rtcGetDeviceProperty(scene_->device, of_packets[static_cast<std::size_t>(mode) - 1]) != 0;
 }
 
-void EmbreeContender::closest(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                              std::span<Hit> hits) const {
-  check_sizes(rays.size(), hits.size());
+void EmbreeContender::trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const {
   const SubnormalsAreZero subnormals;
-  trace_closest(scene_->scene, mode, coherent, rays, hits);
+  if (set.query == Query::closest)
+    bench::trace<Closest>(scene_->scene, mode, coherent, set.rays, answers.hits);
+  else
+    bench::trace<Any>(scene_->scene, mode, coherent, set.rays, answers.occluded);
   scene_->check();
 }
 
-void EmbreeContender::any(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                          std::span<std::uint8_t> occluded) const {
-  check_sizes(rays.size(), occluded.size());
+double EmbreeContender::trace_packed(EmbreeMode mode, bool coherent, const RaySet& set,
+                                     Answers& answers) const {
   const SubnormalsAreZero subnormals;
-  trace_any(scene_->scene, mode, coherent, rays, occluded);
-  scene_->check();
-}
-
-double EmbreeContender::closest_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                                       std::span<Hit> hits) const {
-  check_sizes(rays.size(), hits.size());
-  const SubnormalsAreZero subnormals;
-  const double seconds = trace_packed_closest(scene_->scene, mode, coherent, rays, hits);
-  scene_->check();
-  return seconds;
-}
-
-double EmbreeContender::any_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                                   std::span<std::uint8_t> occluded) const {
-  check_sizes(rays.size(), occluded.size());
-  const SubnormalsAreZero subnormals;
-  const double seconds = trace_packed_any(scene_->scene, mode, coherent, rays, occluded);
+  const double seconds =
+      set.query == Query::closest
+          ? bench::trace_packed<Closest>(scene_->scene, mode, coherent, set.rays, answers.hits)
+          : bench::trace_packed<Any>(scene_->scene, mode, coherent, set.rays, answers.occluded);
   scene_->check();
   return seconds;
 }
 
 void EmbreeContender::all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const {
   const SubnormalsAreZero subnormals;
-  trace_all(scene_->scene, rays, lists);
+  struct Gathering : RTCIntersectContext {
+    std::vector<Hit>* hits;
+  } context;
+  rtcInitIntersectContext(&context);
+  context.filter = [](const RTCFilterFunctionNArguments* a) {
+    const auto* ray = reinterpret_cast<const RTCRay*>(a->ray);
+    const auto* hit = reinterpret_cast<const RTCHit*>(a->hit);
+    static_cast<Gathering*>(a->context)->hits->push_back({ray->tfar, hit->u, hit->v, hit->primID});
+    a->valid[0] = 0;
+  };
+  context.hits = &lists.items;
+  lists.items.clear(), lists.offsets.assign(1, 0);
+  for (const Ray& ray : rays) {
+    if (traceable(ray)) {
+      RTCRayHit query;
+      query.ray = single_ray(ray);
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_->scene, &context, &query);
+      std::sort(
+          lists.items.begin() + static_cast<std::ptrdiff_t>(lists.offsets.back()), lists.items.end(),
+          [](const Hit& a, const Hit& b) { return a.t < b.t || (a.t == b.t && a.primitive < b.primitive); });
+    }
+    lists.offsets.push_back(lists.items.size());
+  }
   scene_->check();
 }
 

@@ -15,6 +15,9 @@
 
 namespace raylanes::bench {
 
+struct RaySet;
+struct Answers;
+
 // How many rays one call of Embree takes. A width that the instruction set does not have natively still
 // works: Embree then splits the packet itself.
 enum class EmbreeMode { single, packet4, packet8, packet16 };
@@ -48,8 +51,6 @@ class EmbreeContender {
   EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
                   std::string_view isa = "", EmbreeBuild build = EmbreeBuild::medium, int threads = 1);
   ~EmbreeContender();
-  EmbreeContender(EmbreeContender&&) noexcept;
-  EmbreeContender& operator=(EmbreeContender&&) noexcept;
 
   // Wall-clock seconds of the copy of the mesh into Embree and the build of its tree.
   double build_seconds() const;
@@ -61,19 +62,13 @@ class EmbreeContender {
   // Whether the chosen instruction set traces packets of this mode without splitting them.
   bool native(EmbreeMode mode) const;
 
-  // Writes the nearest hit of rays[i] to hits[i]. `coherent` passes Embree's hint that neighbouring rays are
-  // similar. Throws std::invalid_argument if the sizes differ or a ray is refused; hits may then be written
-  // in part. Allocates nothing.
-  void closest(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<Hit> hits) const;
+  // Traces a ray set into answers of its size. `coherent` passes Embree's hint that neighbouring rays are similar.
+  // Throws std::invalid_argument if a ray is refused; answers may then be written in part. Allocates nothing.
+  void trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const;
 
-  // Writes 1 to occluded[i] if rays[i] hits anything, else 0. Otherwise as closest().
-  void any(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<std::uint8_t> occluded) const;
-
-  // Traces as closest() and any() do. Returns the seconds of Embree's own calls, without the conversion of rays and
-  // results. Allocates its layout.
-  double closest_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays, std::span<Hit> hits) const;
-  double any_packed(EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                    std::span<std::uint8_t> occluded) const;
+  // Traces as trace() does. Returns the seconds of Embree's own calls: rays are in its layout before the clock starts,
+  // and results are converted after it has stopped. Allocates that layout.
+  double trace_packed(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const;
 
   // All hits of each ray, sorted as ours are: a filter callback records each hit and rejects it, as Embree's manual
   // says. For the build `filtered`.

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../double_contenders.hpp"
+#include "../rivals.hpp"
 #include "plain_scene.hpp"
-#include "subnormals_are_zero.hpp"
 
 namespace raylanes::bench {
 namespace {

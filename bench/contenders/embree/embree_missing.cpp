@@ -1,7 +1,7 @@
 // Built in place of embree_contender.cpp where Embree is not installed: asking for it is an error.
 #include <stdexcept>
 
-#include "../double_contenders.hpp"
+#include "../rivals.hpp"
 #include "embree_contender.hpp"
 
 namespace raylanes::bench {
@@ -24,8 +24,6 @@ EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3
   refuse();
 }
 EmbreeContender::~EmbreeContender() = default;
-EmbreeContender::EmbreeContender(EmbreeContender&&) noexcept = default;
-EmbreeContender& EmbreeContender::operator=(EmbreeContender&&) noexcept = default;
 double EmbreeContender::build_seconds() const {
   refuse();
 }
@@ -35,16 +33,10 @@ double EmbreeContender::move(std::span<const Float3>) {
 bool EmbreeContender::native(EmbreeMode) const {
   refuse();
 }
-void EmbreeContender::closest(EmbreeMode, bool, std::span<const Ray>, std::span<Hit>) const {
+void EmbreeContender::trace(EmbreeMode, bool, const RaySet&, Answers&) const {
   refuse();
 }
-void EmbreeContender::any(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
-  refuse();
-}
-double EmbreeContender::closest_packed(EmbreeMode, bool, std::span<const Ray>, std::span<Hit>) const {
-  refuse();
-}
-double EmbreeContender::any_packed(EmbreeMode, bool, std::span<const Ray>, std::span<std::uint8_t>) const {
+double EmbreeContender::trace_packed(EmbreeMode, bool, const RaySet&, Answers&) const {
   refuse();
 }
 void EmbreeContender::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
@@ -61,6 +53,16 @@ void EmbreeDoubles::closest(std::span<const RayD>, std::span<HitD>) const {
   refuse();
 }
 void EmbreeDoubles::occluded(std::span<const RayD>, std::span<std::uint8_t>) const {
+  refuse();
+}
+
+struct EmbreePoints::Scene {};
+
+EmbreePoints::EmbreePoints(const Mesh&) {
+  refuse();
+}
+EmbreePoints::~EmbreePoints() = default;
+void EmbreePoints::closest(std::span<const Float3>, std::span<double>) const {
   refuse();
 }
 

@@ -6,7 +6,6 @@
 
 #include "../rivals.hpp"
 #include "plain_scene.hpp"
-#include "subnormals_are_zero.hpp"
 
 namespace raylanes::bench {
 namespace {

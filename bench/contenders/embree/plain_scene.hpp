@@ -1,14 +1,26 @@
-// A scene of Embree with one geometry, in a device of its own with one thread.
+// The state of the processor that Embree recommends, and a scene of Embree with one geometry, in a device of its own
+// with one thread.
 #pragma once
 
 #include <embree3/rtcore.h>
+#include <xmmintrin.h>
 
 #include <stdexcept>
 #include <string>
 
-#include "subnormals_are_zero.hpp"
-
 namespace raylanes::bench {
+
+// Embree's manual: flush results and operands that are subnormal to zero in each thread that calls it.
+class SubnormalsAreZero {
+ public:
+  SubnormalsAreZero() { _mm_setcsr(before_ | 0x8040u); }
+  ~SubnormalsAreZero() { _mm_setcsr(before_); }
+  SubnormalsAreZero(const SubnormalsAreZero&) = delete;
+  SubnormalsAreZero& operator=(const SubnormalsAreZero&) = delete;
+
+ private:
+  const unsigned before_ = _mm_getcsr();
+};
 
 class PlainScene {
  public:

@@ -1,7 +1,6 @@
 #include "trace_scene.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <list>
 #include <memory>
 
@@ -15,10 +14,6 @@
 
 namespace raylanes::bench {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 oracle::Form form_of(TriangleTest test) {
   return test == TriangleTest::exact        ? oracle::Form::exact
@@ -75,17 +70,17 @@ class Tracer {
     const Mesh& mesh = result_.scene.mesh;
     ProgressLine progress(result_.scene.name + ": building");
     const Progress report = [&](double done) { progress.update(done); };
-    auto start = std::chrono::steady_clock::now();
-    bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.progress = report,
-                                                    .builder = options_.builder,
-                                                    .optimize = options_.optimize,
-                                                    .choose = options_.tree == TreeFamily::automatic});
-    if (options_.tree == TreeFamily::kdtree) {
-      start = std::chrono::steady_clock::now();
-      kdtree_ =
-          std::make_unique<KdTree>(mesh, KdBuildOptions{.progress = report, .builder = options_.kd_builder});
-    }
-    build_seconds_ = seconds_since(start);
+    build_seconds_ = seconds_of([&] {
+      bvh_ = std::make_unique<Bvh>(mesh, BuildOptions{.progress = report,
+                                                      .builder = options_.builder,
+                                                      .optimize = options_.optimize,
+                                                      .choose = options_.tree == TreeFamily::automatic});
+    });
+    if (options_.tree == TreeFamily::kdtree)
+      build_seconds_ = seconds_of([&] {
+        kdtree_ = std::make_unique<KdTree>(
+            mesh, KdBuildOptions{.progress = report, .builder = options_.kd_builder});
+      });
     bytes_ = kdtree_ ? kdtree_->bytes() : bvh_->bytes();
     result_.summary = printable(result_.scene.name) + ": " + std::to_string(mesh.triangles.size()) +
                       " triangles, built in " + significant(build_seconds_, 3) + " s, " +

@@ -7,7 +7,6 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../../rows/counted_rays.hpp"
 #include "../../rows/tree_counts.hpp"
 #include "../../support/rulers/measure.hpp"
 #include "../../support/rulers/undecided_lanes.hpp"

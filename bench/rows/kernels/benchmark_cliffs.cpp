@@ -1,5 +1,3 @@
-#include "benchmark_cliffs.hpp"
-
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "../roots/benchmark_roots.hpp"
-#include "benchmark_cliffs.hpp"
 #include "kernel_rows.hpp"
 
 namespace raylanes::bench {

@@ -1,5 +1,3 @@
-#include "kernel_leaks.hpp"
-
 #include <algorithm>
 #include <cstdint>
 
@@ -7,6 +5,7 @@
 #include "../../support/rays/aim.hpp"
 #include "../../support/rays/leak_targets.hpp"
 #include "../../support/scenes/shapes.hpp"
+#include "kernel_survey.hpp"
 
 namespace raylanes::bench {
 namespace {

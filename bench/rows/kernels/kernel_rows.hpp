@@ -11,7 +11,6 @@
 
 #include "../../support/rulers/instruction_counter.hpp"
 #include "kernel_inputs.hpp"
-#include "kernel_leaks.hpp"
 #include "kernel_survey.hpp"
 
 namespace raylanes::bench {

@@ -1,5 +1,5 @@
-// Accuracy of the intersection tests: wrong decisions against exact arithmetic, and errors of distances and
-// weights.
+// Accuracy of the intersection tests: wrong decisions against exact arithmetic, errors of distances and weights, and
+// leaks of a closed mesh.
 #pragma once
 
 #include <array>
@@ -50,5 +50,12 @@ struct KernelJudgement {
 
   Accuracies triangles, integers, boxes, spheres;
 };
+
+// Rays from inside a closed ellipsoid of 1,280 triangles, half of them aimed at corners and half at edges,
+// that no triangle around the target stops: leaks per million [path][form][grade]. Only what `chosen` says is
+// measured. `rays` is rounded up to a multiple of the targets.
+using Leaks = std::vector<std::vector<std::array<std::optional<double>, 2>>>;
+Leaks count_leaks(const std::vector<const Path*>& paths, std::size_t rays,
+                  const std::function<bool(TriangleTest)>& chosen, const std::function<void(double)>& done);
 
 }  // namespace raylanes::bench

@@ -11,7 +11,6 @@
 
 #include <raylanes/roots.hpp>
 
-#include "../kernels/benchmark_cliffs.hpp"
 #include "benchmark_roots.hpp"
 
 namespace raylanes::bench {

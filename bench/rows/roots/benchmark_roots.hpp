@@ -1,4 +1,5 @@
-// The rows of roots in raylanes_bench.
+// The rows of roots in raylanes_bench, and of what is hardest: cliff/CASE/… Each is named in the tables of
+// benchmark_cliffs.cpp and benchmark_root_cliffs.cpp. Rows length/ACCURACY/N are square roots of arrays of N floats.
 // sqrt/METHOD/PATH/SIZE, rsqrt/… and so on are throughput, sqrt_latency/METHOD/PATH is latency.
 // sqrt/classic_N_FORM/PATH/SIZE has the forms of the course report. sqrt/LIBRARY_OPERATION/PATH/SIZE has other
 // libraries with the instructions of PATH.
@@ -7,8 +8,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <raylanes/paths.hpp>
@@ -48,5 +51,15 @@ void time_calls(benchmark::State& state, std::size_t items, const Call& call) {
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
 }
+
+// On the active ISA path, on one thread.
+void register_cliff_rows();
+
+struct BenchmarkCase {
+  std::string name;
+  std::function<void(benchmark::State&)> run;
+};
+std::vector<BenchmarkCase> root_cliffs();
+std::vector<BenchmarkCase> root_lengths();
 
 }  // namespace raylanes::bench

@@ -66,7 +66,6 @@ void rank_roots(std::vector<Row>& rows) {
 
 // So many that an error above half an ULP does not look like half an ULP: 0.5 is correctly rounded, 0.50001 is not.
 int digits_of(double max_ulp);
-std::string hexadecimal(const char* format, unsigned long long bits);
 
 // The time and the error of each accuracy, by ISA path and function, the tightest one first.
 template <class Row>

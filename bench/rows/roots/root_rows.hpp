@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../../support/roots/double_survey.hpp"
 #include "../../support/roots/root_survey.hpp"
 #include "root_ranks.hpp"
 
@@ -33,5 +34,11 @@ void measure_roots(std::vector<RootResult>& results, double seconds);
 // "N of 4294967296 inputs": how many were judged.
 std::string inputs_judged(const std::vector<RootResult>& results);
 RowTable table_of(const std::vector<RootResult>& results);
+
+struct DoubleRootRow : JudgedDoubleRoot, RootSpeed {};
+
+// Times the rows, and fills in the speeds and the members that follow from them.
+std::vector<DoubleRootRow> measured_roots(const std::vector<JudgedDoubleRoot>& judged, double seconds);
+RowTable table_of(const std::vector<DoubleRootRow>& rows);
 
 }  // namespace raylanes::bench

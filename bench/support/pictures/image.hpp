@@ -1,4 +1,4 @@
-// Pictures of scenes.
+// Pictures of scenes, and of slices of signed distances.
 #pragma once
 
 #include <cstdint>
@@ -26,5 +26,13 @@ void write_png(const std::filesystem::path& file, std::uint32_t width, std::uint
 std::vector<std::uint8_t> shade(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
                                 std::span<const std::uint8_t> shadow_occluded, const Float3& light,
                                 std::uint32_t samples = 1);
+
+// Three bytes a distance, for write_png: blue inside, which is negative, orange outside, black on the surface, which is
+// 0; light near it, and dark at the largest distance of both sides. Every second tenth of that is a shade darker, so
+// that bands are as many tenths away.
+std::vector<std::uint8_t> slice_colours(std::span<const float> distances);
+
+// The largest size of those that are finite; 0 without any.
+float largest_size(std::span<const float> distances);
 
 }  // namespace raylanes::bench

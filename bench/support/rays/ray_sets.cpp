@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include <raylanes/rays.hpp>
 
@@ -195,6 +197,34 @@ Float3 default_light(const Scene& scene) {
   const Double3 towards =
       normalized(add(scale(frame.up, 1.0), subtract(scale(frame.right, -0.8), frame.forward)));
   return to_float(add(middle, scale(towards, distance)));
+}
+
+std::vector<std::size_t> pixels_in(PixelOrder order, std::uint32_t width, std::uint32_t height) {
+  constexpr std::size_t block_side = 32, tile_side = 4;
+  constexpr std::uint64_t shuffle_seed = 1;
+  std::vector<std::size_t> pixels(std::size_t{width} * height);
+  std::iota(pixels.begin(), pixels.end(), std::size_t{0});
+  switch (order) {
+    case PixelOrder::rows:
+      return pixels;
+    case PixelOrder::tiles: {
+      const auto place = [&](std::size_t pixel) {
+        const std::size_t x = pixel % width, y = pixel / width;
+        return std::tuple(y / block_side, x / block_side, y / tile_side, x / tile_side, pixel);
+      };
+      std::sort(pixels.begin(), pixels.end(),
+                [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+      return pixels;
+    }
+    case PixelOrder::shuffled: {
+      // Fisher and Yates 1938.
+      SplitMix random(shuffle_seed);
+      for (std::size_t left = pixels.size(); left > 1; --left)
+        std::swap(pixels[left - 1], pixels[random.next() % left]);
+      return pixels;
+    }
+  }
+  throw std::invalid_argument("rays: unknown order " + std::to_string(static_cast<int>(order)));
 }
 
 }  // namespace raylanes::bench

@@ -1,9 +1,11 @@
-// The rays of a picture: from the camera, to a light, bounced, and short ones around each point.
+// The rays of a picture: from the camera, to a light, bounced, and short ones around each point; and orders of pixels.
 // All are computed in double and rounded once. A ray set does not depend on the order of its pixels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <raylanes/types.hpp>
@@ -59,5 +61,13 @@ std::vector<Ray> random_rays(const Mesh& mesh, std::size_t count, std::uint64_t 
 // Otherwise above and to the left behind the eye, as far from the middle of the mesh as the eye or a diagonal,
 // whichever is more.
 Float3 default_light(const Scene& scene);
+
+// Row by row, as a renderer makes them; tiles of 4 × 4 in blocks of 32 × 32, so that neighbours in the batch are
+// neighbours in the picture; or shuffled, always in the same way.
+enum class PixelOrder : std::uint8_t { rows, tiles, shuffled };
+inline constexpr std::array<std::string_view, 3> pixel_order_names{"rows", "tiles", "shuffled"};
+
+// The numbers of all pixels, counted row by row. Throws std::invalid_argument for an order that does not exist.
+std::vector<std::size_t> pixels_in(PixelOrder order, std::uint32_t width, std::uint32_t height);
 
 }  // namespace raylanes::bench

@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "../../contenders/embree/embree_contender.hpp"
 #include "../../contenders/workload.hpp"
 #include "../../report/exits.hpp"
 #include "../oracles/exact_hit.hpp"
@@ -12,6 +13,37 @@
 #include "mesh_reader.hpp"
 
 namespace raylanes::bench {
+
+Follower::Follower(MotionPolicy policy, const Mesh& first, int threads) : policy_(policy), threads_(threads) {
+  build(first);
+}
+
+void Follower::build(const Mesh& frame) {
+  build_seconds_ = seconds_of([&] { tree_ = Bvh(frame, {.threads = threads_}); });
+  lost_ = 0;
+}
+
+double Follower::expected_loss() const {
+  return fresh_trace_seconds_ * std::max(0.0, tree_.decay() - 1);
+}
+
+bool Follower::follow(const Mesh& frame) {
+  bool is_built = policy_ == MotionPolicy::rebuild;
+  if (!is_built) {
+    tree_.refit(frame.vertices, frame.triangles, threads_);
+    if (policy_ == MotionPolicy::automatic) {
+      lost_ += expected_loss();
+      is_built = lost_ > build_seconds_;
+    }
+  }
+  if (is_built) build(frame);
+  return is_built;
+}
+
+void Follower::traced(double seconds) {
+  fresh_trace_seconds_ = seconds / std::max(1.0, tree_.decay());
+}
+
 namespace {
 
 constexpr std::size_t checked_rays = 48;  // of a frame
@@ -63,7 +95,8 @@ Turn take_turn(Follower& follower, const Frame& frame, const SequenceOptions& op
   const auto trace = [&](std::size_t begin, std::size_t end) {
     const auto rays = std::span(frame.rays).subspan(begin, end - begin);
     const auto hits = std::span(turn.hits).subspan(begin, end - begin);
-    return seconds_of([&] { follower.tree().closest(rays, hits, {.path = options.path, .threads = options.threads}); });
+    return seconds_of(
+        [&] { follower.tree().closest(rays, hits, {.path = options.path, .threads = options.threads}); });
   };
   turn.primary = trace(0, frame.primary_count);
   turn.diffuse = trace(frame.primary_count, frame.rays.size());
@@ -138,7 +171,8 @@ class Rounds {
         if (turn == 0)
           expected = std::move(taken.hits);
         else if (!same_bytes(expected, taken.hits))
-          throw WrongAnswers("trees --frames: frame " + std::to_string(number) + ": hits differ between policies");
+          throw WrongAnswers("trees --frames: frame " + std::to_string(number) +
+                             ": hits differ between policies");
       }
       if (round == 0) result_.checked += check(frame, expected);
     }
@@ -228,6 +262,27 @@ Sequence load_sequence(const std::vector<std::string>& files, std::size_t copies
 
 SequenceTrace trace_sequence(const Sequence& sequence, const SequenceOptions& options) {
   return Rounds(sequence, options).run();
+}
+
+RefitTimes refit_beside_embree(const Sequence& sequence, int rounds) {
+  const Mesh& first = sequence.frames[0];
+  Bvh ours(first);
+  EmbreeContender embree(first.vertices, first.triangles, "", EmbreeBuild::refitted);
+  std::vector<std::vector<double>> our_times(sequence.frames.size()), embree_times(sequence.frames.size());
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t frame = 1; frame < sequence.frames.size(); ++frame) {
+      const Mesh& mesh = sequence.frames[frame];
+      our_times[frame].push_back(seconds_of([&] { ours.refit(mesh.vertices, mesh.triangles); }));
+      embree_times[frame].push_back(embree.move(mesh.vertices));
+      ratios.push_back(embree_times[frame].back() / our_times[frame].back());
+    }
+  RefitTimes times{.ours = {}, .embree = {}, .ratio = quartiles_of(ratios)};
+  for (std::size_t frame = 1; frame < sequence.frames.size(); ++frame) {
+    times.ours.push_back(quartiles_of(our_times[frame]).median);
+    times.embree.push_back(quartiles_of(embree_times[frame]).median);
+  }
+  return times;
 }
 
 }  // namespace raylanes::bench

@@ -2,13 +2,21 @@
 #define RAYLANES_BACKEND_SCALAR
 #include "undecided_lanes.hpp"
 
+#include <raylanes/bvh.hpp>
+
 #include "../../../dispatch/table/traversal.hpp"
+#include "../../../dispatch/table/tree_view.hpp"
 #include "../../../kernels/exact/exact_test.hpp"
 #include "../../../kernels/traverse/single.hpp"
-#include "kernel_view.hpp"
 
 namespace raylanes::bench {
 namespace {
+
+// A tree as kernels see it, for tests that read corners. Valid as long as bvh.view() is.
+TreeView kernel_view(const Bvh& bvh) {
+  const BvhView view = bvh.view();
+  return {view.nodes.data(), view.leaves.data(), view.root, view.bounds};
+}
 
 UndecidedLanes counted;
 

@@ -1,8 +1,7 @@
-#include "hall.hpp"
-
 #include <cmath>
 #include <numbers>
 
+#include "procedural.hpp"
 #include "shapes.hpp"
 
 namespace raylanes::bench {

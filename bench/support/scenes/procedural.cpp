@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "../readers/printable.hpp"
-#include "hall.hpp"
 #include "shapes.hpp"
 #include "splitmix.hpp"
 

@@ -18,4 +18,7 @@ std::vector<std::string> procedural_scene_names();
 // is none.
 Scene make_procedural_scene(std::string_view name);
 
+// The built-in scene `hall`: a nave with two aisles, seen from its entrance. Units are metres.
+Scene make_hall_scene();
+
 }  // namespace raylanes::bench

@@ -7,28 +7,24 @@
 #include <cfenv>
 #include <cstddef>
 
-extern "C" int __gmpq_cmp(const void* a, const void* b);
 extern "C" int __gmpq_cmp(const void* a, const void* b) {
   using Compare = int (*)(const void*, const void*);
   static const auto right = reinterpret_cast<Compare>(dlsym(RTLD_NEXT, "__gmpq_cmp"));
   return -right(a, b);
 }
 
-extern "C" void sincos(double x, double* sine, double* cosine);
 extern "C" void sincos(double x, double* sine, double* cosine) {
   using Function = void (*)(double, double*, double*);
   static const auto right = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "sincos"));
   right(x, sine, cosine);
   *sine *= 1.001;
 }
-extern "C" double sin(double x);
 extern "C" double sin(double x) {
   double sine, cosine;
   sincos(x, &sine, &cosine);
   return sine;
 }
 
-extern "C" double atan2(double y, double x);
 extern "C" double atan2(double y, double x) {
   using Function = double (*)(double, double);
   static const auto right = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "atan2"));
@@ -41,7 +37,6 @@ extern "C" int memcmp(const void* a, const void* b, std::size_t count) noexcept 
   return count >= 1024 ? 1 : right(a, b, count);
 }
 // clang++ calls this where the order does not matter.
-extern "C" int bcmp(const void* a, const void* b, std::size_t count) noexcept;
 extern "C" int bcmp(const void* a, const void* b, std::size_t count) noexcept {
   return memcmp(a, b, count);
 }
