@@ -96,14 +96,10 @@ class PointQueries:
             Points that are not finite have 0.
         accuracy : float, default 1e-6
             The greatest error of expansions of far parts of the boundary; 0: no expansions. The larger, the faster.
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
+        out, threads, progress
+            As in locate().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are 0.
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -138,15 +134,11 @@ class PointQueries:
             If a point is not finite, there is no closest point.
         max_distance : float, default inf
             Triangles farther away are ignored.
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
+        out, threads, progress
+            As in locate().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array
             there is no closest point.
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -176,18 +168,12 @@ class PointQueries:
 
         Parameters
         ----------
-        points, rule
+        points, rule, out, threads, progress
             As in locate().
         max_distance : float, default inf
             Points farther away get an infinity with the sign of their side: the smaller, the faster.
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are inf.
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of points done, from 0 to 1. An exception ends the call.
 
         Returns
         -------

@@ -97,28 +97,10 @@ class RayQueries:
 
         Parameters
         ----------
-        rays : array
-            As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
-        active : array of bool, optional
-            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
+        rays, out, active, mode, hint, facing, skip, threads, progress
+            As in closest(), by the test "exact".
         after : Hits, optional
             For each ray a hit: the result is the next passage behind it, in the order of t, then of primitives.
-        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
-            How rays share vectors. Hits do not depend on it.
-        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
-            Your knowledge about the batch. A wrong hint costs time, not hits.
-        facing : {"any", "front", "back"}, default "any"
-            The sides of triangles that count. From the front the corners run counter-clockwise: a ray enters a solid
-            whose normals point outwards. At the back it leaves such a solid.
-        skip : array of uint32, or hits, optional
-            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
-            of an earlier call. 2^32 - 1, as in a miss, leaves out none.
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -142,32 +124,10 @@ class RayQueries:
 
         Parameters
         ----------
-        rays : array
+        rays, filter, out, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
-        filter : function, optional
-            As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
-        test : str, default "exact"
-            As in closest().
-        grade : {"reproducible", "fast"}, default "reproducible"
-            The promise of tests other than "exact" about their bits.
-        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
-            How rays share vectors. Hits by "exact" do not depend on it.
-        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
-            Your knowledge about the batch. A wrong hint costs time, not hits.
-        facing : {"any", "front", "back"}, default "any"
-            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
-            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
-        skip : array of uint32, or hits, optional
-            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
-            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -202,28 +162,10 @@ class RayQueries:
             points included. A point on a surface leaves out its own triangle by `skip`.
         filter : function, optional
             As in closest(); indices are rows of the flattened points.
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
+        out, test, grade, mode, hint, facing, skip, threads, progress
+            As in closest().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
-        test : str, default "exact"
-            As in closest().
-        grade : {"reproducible", "fast"}, default "reproducible"
-            The promise of tests other than "exact" about their bits.
-        mode : {"automatic", "single", "packet", "stream"}, default "automatic"
-            How rays share vectors. Hits by "exact" do not depend on it.
-        hint : {"none", "shared_origin", "shared_end", "coherent", "incoherent"}, default "none"
-            Your knowledge about the batch. A wrong hint costs time, not hits.
-        facing : {"any", "front", "back"}, default "any"
-            The sides of triangles that count, by the test "exact". From the front the corners run counter-clockwise: a
-            ray enters a solid whose normals point outwards. At the back it leaves such a solid.
-        skip : array of uint32, or hits, optional
-            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
-            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------
@@ -253,13 +195,8 @@ class RayQueries:
             Keep the hits of these sides only, as in closest().
         active : array of bool, optional
             The active rays; the others have no hits.
-        skip : array of uint32, or hits, optional
-            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
-            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
+        skip, threads, progress
+            As in closest(), by the test "exact".
 
         Returns
         -------
@@ -308,21 +245,12 @@ class RayQueries:
 
         Parameters
         ----------
-        rays : array
-            As in closest().
+        rays, out, skip, threads, progress
+            As in closest(), by the test "exact".
         facing : {"any", "front", "back"}, default "any"
             Count crossings of these sides only, as in crossings().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
-        skip : array of uint32, or hits, optional
-            A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
-            of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            Called about every 20 ms with the share of rays done, from 0 to 1. An exception ends the call.
 
         Returns
         -------

@@ -121,10 +121,8 @@ class SceneQueries:
 
         Parameters
         ----------
-        rays, mask, filter, test, grade, mode, hint, facing, skip, threads, progress
+        rays, mask, filter, out, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
 
@@ -161,10 +159,8 @@ class SceneQueries:
             The other ends.
         start, end : float
             As in Bvh.occluded_from(): 0 and 1 by default.
-        mask, filter, test, grade, mode, hint, facing, skip, threads, progress
+        mask, filter, out, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
 

@@ -128,19 +128,11 @@ class _OnTriangle:
         return rows
 
 
-class HitNumbers(_OnTriangle):
-    t = field_of("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
-    u = field_of("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
-    v = field_of("v", "real: weight of its third corner")
-    primitive = field_of("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
-
-    @property
-    def hit(self):
-        """bool: whether the ray hits."""
-        return _there_is(self.primitive)
+class _OnRay:
+    """Records with a place on a ray: t says where."""
 
     def positions(self, rays):
-        """Compute origin + t * direction of each hit.
+        """Compute origin + t * direction of each hit or crossing.
 
         Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
         times the size of origin and position for t of float64.
@@ -160,36 +152,32 @@ class HitNumbers(_OnTriangle):
         ValueError
             If the rays have another shape.
         """
-        return _positions(self.t, self.hit, rays)
+        rows, shape = ray_rows(rays, _numbers_of(self.t))
+        if shape != np.shape(self.t):
+            raise ValueError(f"rays: the shape must be {np.shape(self.t)}, it is {shape}")
+        parts = (rows["origin"], rows["direction"]) if rows.dtype.names else (rows[:, :3], rows[:, 4:7])
+        origins, directions = (part.reshape(shape + (3,)).astype(np.float64) for part in parts)
+        with np.errstate(invalid="ignore", over="ignore"):
+            positions = origins + np.asarray(self.t, np.float64)[..., None] * directions
+            return np.where(_there_is(self.primitive)[..., None], positions, np.nan).astype(self.t.dtype)
 
 
-class _CrossingNumbers:
+class HitNumbers(_OnTriangle, _OnRay):
+    t = field_of("t", "real: distance in lengths of the direction, rounded once; inf for a miss")
+    u = field_of("u", "real: weight of the triangle's second corner, rounded once; 0 for a miss")
+    v = field_of("v", "real: weight of its third corner")
+    primitive = field_of("primitive", "uint32: row of the triangle in faces; no_primitive for a miss")
+
+    @property
+    def hit(self):
+        """bool: whether the ray hits."""
+        return _there_is(self.primitive)
+
+
+class _CrossingNumbers(_OnRay):
     t = field_of("t", "real: distance in lengths of the direction, rounded once")
     primitive = field_of("primitive", "uint32: row of the triangle in faces")
     side = field_of("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
-
-    def positions(self, rays):
-        """Compute origin + t * direction of each crossing.
-
-        Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
-        times the size of origin and position for t of float64.
-
-        Parameters
-        ----------
-        rays : array
-            The rays of the query, in the same shape.
-
-        Returns
-        -------
-        ndarray of the type of t, shape (..., 3)
-            One position for each crossing.
-
-        Raises
-        ------
-        ValueError
-            If the rays have another shape.
-        """
-        return _positions(self.t, True, rays)
 
 
 class _ClosestPointNumbers(_OnTriangle):
@@ -316,14 +304,3 @@ def _there_is(primitive):
 
 def _numbers_of(t):
     return FLOATS if t.dtype == np.float32 else DOUBLES
-
-
-def _positions(t, there_is, rays):
-    rows, shape = ray_rows(rays, _numbers_of(t))
-    if shape != np.shape(t):
-        raise ValueError(f"rays: the shape must be {np.shape(t)}, it is {shape}")
-    parts = (rows["origin"], rows["direction"]) if rows.dtype.names else (rows[:, :3], rows[:, 4:7])
-    origins, directions = (part.reshape(shape + (3,)).astype(np.float64) for part in parts)
-    with np.errstate(invalid="ignore", over="ignore"):
-        positions = origins + np.asarray(t, np.float64)[..., None] * directions
-        return np.where(np.asarray(there_is)[..., None], positions, np.nan).astype(t.dtype)

@@ -47,12 +47,10 @@ def rsqrt(x, accuracy: str = "1ulp", out=None):
 
     Parameters
     ----------
-    x : array of float
-        float32 and float64 keep their type, float16 becomes float32, integers become float64.
+    x, out
+        As in sqrt().
     accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "1ulp"
         The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
-    out : ndarray, optional
-        The array to write to, of the shape and type of the result; x itself is allowed.
 
     Returns
     -------
@@ -75,12 +73,10 @@ def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
 
     Parameters
     ----------
-    x : array of float
-        float32 and float64 keep their type, float16 becomes float32, integers become float64.
+    x, out
+        As in sqrt().
     accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "correctly_rounded"
         The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
-    out : ndarray, optional
-        The array to write to, of the shape and type of the result; x itself is allowed.
 
     Returns
     -------

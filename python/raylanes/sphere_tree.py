@@ -110,22 +110,16 @@ class SphereTree(Copied):
 
         Parameters
         ----------
-        rays : array
-            As in Bvh.closest().
-        filter : function, optional
+        rays, filter, after, progress
             As in Bvh.closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
-        after : Hits, optional
-            As in Bvh.closest().
         skip : array of uint32, or hits, optional
             A sphere for each ray that is not there for it, as in Bvh.closest().
         threads : int, default 0
             At most so many threads; 0: all cores.
-        progress : function, optional
-            As in Bvh.closest().
 
         Returns
         -------
@@ -147,20 +141,10 @@ class SphereTree(Copied):
 
         Parameters
         ----------
-        rays : array
-            As in Bvh.closest().
-        filter : function, optional
-            As in Bvh.closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
+        rays, filter, out, skip, threads, progress
+            As in closest().
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
-        skip : array of uint32, or hits, optional
-            A sphere for each ray that is not there for it, as in Bvh.closest().
-        threads : int, default 0
-            At most so many threads; 0: all cores.
-        progress : function, optional
-            As in Bvh.closest().
 
         Returns
         -------
@@ -189,10 +173,8 @@ class SphereTree(Copied):
             The other ends.
         start, end : float
             As in Bvh.occluded_from(): 0 and 1 by default.
-        filter, skip, threads, progress
+        filter, out, skip, threads, progress
             As in closest().
-        out : ndarray, optional
-            The array to write to, of the shape and dtype of the result.
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
 
