@@ -19,7 +19,7 @@ class Mutant:
         return text[:at] + self.new + text[at + len(self.old):]
 
 
-def rows_of(file, program, rows, **more):
+def rows_of(file, program, *rows, **more):
     """Mutants of one file that one test must notice: tuples of a name, what is there, and what replaces it."""
     return [Mutant(name, file, old, new, (program,), **more) for name, old, new in rows]
 
