@@ -152,10 +152,5 @@ static_assert(is_complete(BoxTests{}, box_tests),
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const BoxKernels boxes;
-constinit const BoxKernels boxes = rows_of<BoxKernels>(BoxTests{}, MakeRow{});
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(BoxKernels, boxes, rows_of<BoxKernels>(BoxTests{}, MakeRow{}))
 }  // namespace raylanes

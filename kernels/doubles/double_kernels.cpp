@@ -6,21 +6,12 @@
 #include "double_points.hpp"
 #include "double_streams.hpp"
 
-namespace raylanes::detail::RAYLANES_PATH_NAME {
+namespace raylanes {
 
-extern constinit const DoubleRayKernels doubles;
-constinit const DoubleRayKernels doubles{closest_double_of_ray,
-                                         any_double_of_ray,
-                                         nearest_triangle_of_ray,
-                                         closest_doubles,
-                                         any_double,
-                                         list_all<WalksFrame, DoubleList, NoCounters>,
-                                         closest_double_stream,
-                                         any_double_stream,
-                                         double_stream_bytes,
-                                         packet_doubles,
-                                         double_packet_bytes,
-                                         closest_of_point<DoublePoints>,
-                                         closest_of_points<DoublePoints, NoCounters>};
+RAYLANES_UNIT_TABLE(DoubleRayKernels, doubles, closest_double_of_ray, any_double_of_ray,
+                    nearest_triangle_of_ray, closest_doubles, any_double,
+                    list_all<WalksFrame, DoubleList, NoCounters>, closest_double_stream, any_double_stream,
+                    double_stream_bytes, packet_doubles, double_packet_bytes, closest_of_point<DoublePoints>,
+                    closest_of_points<DoublePoints, NoCounters>)
 
-}  // namespace raylanes::detail::RAYLANES_PATH_NAME
+}  // namespace raylanes

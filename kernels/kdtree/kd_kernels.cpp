@@ -16,10 +16,5 @@ constexpr KdKernels all_kernels() {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const KdKernels kdtree;
-constinit const KdKernels kdtree = all_kernels();
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(KdKernels, kdtree, all_kernels())
 }  // namespace raylanes

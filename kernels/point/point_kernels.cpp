@@ -61,10 +61,5 @@ constexpr PointKernels all_kernels() {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const PointKernels points;
-constinit const PointKernels points = all_kernels();
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(PointKernels, points, all_kernels())
 }  // namespace raylanes

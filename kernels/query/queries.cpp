@@ -43,10 +43,5 @@ constexpr AllQueryKernels all_queries() {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const AllQueryKernels queries;
-constinit const AllQueryKernels queries = all_queries();
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(AllQueryKernels, queries, all_queries())
 }  // namespace raylanes

@@ -199,21 +199,15 @@ constexpr bool is_complete(const Row<T, Method> (&rows)[Count],
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const RootKernels roots;
-constinit const RootKernels roots{rows_of(sqrt_rows, sqrt_choice),
-                                  rows_of(rsqrt_rows, rsqrt_choice),
-                                  rows_of(reciprocal_rows, reciprocal_choice),
-                                  rows_of(double_sqrt_rows, double_sqrt_choice),
-                                  rows_of(double_rsqrt_rows, double_rsqrt_choice),
-                                  rows_of(double_reciprocal_rows, double_reciprocal_choice),
-                                  sqrt_in_two_passes()};
 static_assert(is_complete(sqrt_rows, sqrt_methods) && is_complete(rsqrt_rows, rsqrt_methods) &&
               is_complete(reciprocal_rows, reciprocal_methods));
 static_assert(is_complete(double_sqrt_rows, double_sqrt_methods) &&
               is_complete(double_rsqrt_rows, double_rsqrt_methods) &&
               is_complete(double_reciprocal_rows, double_reciprocal_methods));
+RAYLANES_UNIT_TABLE(RootKernels, roots, rows_of(sqrt_rows, sqrt_choice), rows_of(rsqrt_rows, rsqrt_choice),
+                    rows_of(reciprocal_rows, reciprocal_choice),
+                    rows_of(double_sqrt_rows, double_sqrt_choice),
+                    rows_of(double_rsqrt_rows, double_rsqrt_choice),
+                    rows_of(double_reciprocal_rows, double_reciprocal_choice), sqrt_in_two_passes())
 
-}  // namespace detail::RAYLANES_PATH_NAME
 }  // namespace raylanes

@@ -63,6 +63,13 @@
 
 #include <raylanes/types.hpp>
 
+// The table of a unit's functions, by the name of the path: the only symbol that leaves the object.
+#define RAYLANES_UNIT_TABLE(Kernels, name, ...) \
+  namespace detail::RAYLANES_PATH_NAME {        \
+  extern constinit const Kernels name;          \
+  constinit const Kernels name{__VA_ARGS__};    \
+  }
+
 namespace raylanes {
 namespace {
 

@@ -211,10 +211,5 @@ constexpr SphereKernels all_kernels() {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const SphereKernels spheres;
-constinit const SphereKernels spheres = all_kernels();
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(SphereKernels, spheres, all_kernels())
 }  // namespace raylanes

@@ -194,10 +194,5 @@ static_assert(is_complete(TriangleTests{}, triangle_tests));
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const TriangleKernels triangles;
-constinit const TriangleKernels triangles = rows_of<TriangleKernels>(TriangleTests{}, MakeRow());
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(TriangleKernels, triangles, rows_of<TriangleKernels>(TriangleTests{}, MakeRow()))
 }  // namespace raylanes

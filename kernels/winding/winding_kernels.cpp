@@ -160,10 +160,5 @@ void boundary_terms(const BoundaryView& boundary, const BoundaryBatch& batch) {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const WindingKernels winding;
-constinit const WindingKernels winding{boundary_terms<float>, boundary_terms<double>};
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(WindingKernels, winding, boundary_terms<float>, boundary_terms<double>)
 }  // namespace raylanes
