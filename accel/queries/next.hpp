@@ -29,16 +29,16 @@ void trace_behind(const BatchPlan& plan, const RaySourceOf<T>& rays, const HitRe
 
 // The hits of active rays that the filter turns down become the next ones; next(rays, hits, options) finds those behind
 // options.after.
-template <class T, class Filter, class Options, class Next, class Asked = EveryHit>
-void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, const Filter& filter,
+template <class T, class AnyHit = HitOf<T>, class Filter, class Options, class Next, class Asked = EveryHit>
+void filter_hits(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Filter& filter,
                  const Options& options, const Next& next, const Asked& may_turn_down = {}) {
   if constexpr (std::is_constructible_v<bool, const Filter&>)
     if (!filter) return;
   Options again = options;
   again.active = nullptr, again.progress = nullptr;
-  replace_turned_down<HitOf<T>>(
+  replace_turned_down<AnyHit>(
       rays, hits, filter,
-      [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last,
+      [&](const std::vector<RayOf<T>>& some, std::vector<AnyHit>& last,
           const std::vector<std::size_t>& indices) {
         const auto skips = skips_of(rays.skip, indices);
         again.after = last, again.skip = skips;
@@ -47,9 +47,9 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, c
       may_turn_down);
 }
 
-// Calls with a filter, for all trees: trace(rays, hits, options) is their call without one, and finds what is behind
-// options.after. `call` begins messages.
-template <class T, class Filter, class Options, class Trace>
+// Calls with a filter, for all trees and scenes: trace(rays, hits, options) is their call without one, and finds what
+// is behind options.after. `call` begins messages.
+template <class T, class Filter, class Options, class Trace, class AnyHit = HitOf<T>>
 struct FilteredCall {
   const char* call;
   const Filter& filter;
@@ -58,7 +58,7 @@ struct FilteredCall {
 
   // RayRecords or RayArraysOf<T>.
   template <class Rays>
-  void closest(const Rays& rays, const HitRecords<HitOf<T>>& hits) const {
+  void closest(const Rays& rays, const HitRecords<AnyHit>& hits) const {
     find(source_of(rays), hits, options);
   }
   template <class Rays>
@@ -80,18 +80,18 @@ struct FilteredCall {
   RaySourceOf<T> source_of(const RayArraysOf<T>& rays) const {
     return {.arrays = &rays, .active = options.active, .skip = options.skip};
   }
-  void find(const RaySourceOf<T>& rays, const HitRecords<HitOf<T>>& hits, const Options& by) const {
+  void find(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Options& by) const {
     trace(rays, hits, by);
     filter_hits<T>(rays, hits, filter, by,
-                   [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last, const Options& again) {
+                   [&](const std::vector<RayOf<T>>& some, std::vector<AnyHit>& last, const Options& again) {
                      trace({.records = some, .skip = again.skip}, last, again);
                    });
   }
   void find_occluded(const RaySourceOf<T>& rays, const char* what, std::span<std::uint8_t> occluded) const {
-    occluded_by_filter<HitOf<T>>(call, rays, what, occluded, options,
-                                 [&](const HitRecords<HitOf<T>>& hits, const Options& from_the_first) {
-                                   find(rays, hits, from_the_first);
-                                 });
+    occluded_by_filter<AnyHit>(call, rays, what, occluded, options,
+                               [&](const HitRecords<AnyHit>& hits, const Options& from_the_first) {
+                                 find(rays, hits, from_the_first);
+                               });
   }
 };
 

@@ -16,29 +16,15 @@ void require_exact_in_scene(const TraceOptions& options) {
         "scene: next hits and filters take the test exact alone; others have no order of hits");
 }
 
-// Replaces the hits that the filter turns down by those behind them.
-void filter_scene_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
-                       const SceneHitFilter& filter, const TraceOptions& options, std::uint32_t mask) {
-  require_exact_in_scene(options);
-  trace_hits(scene, rays, hits, options, mask);
-  if (!filter) return;
-  TraceOptions again = options;
-  again.active = nullptr, again.progress = nullptr;
-  replace_turned_down<SceneHit>(rays, hits, filter,
-                                [&](const std::vector<Ray>& some, std::vector<SceneHit>& last,
-                                    const std::vector<std::size_t>& indices) {
-                                  const auto skips = skips_of(options.skip, indices);
-                                  again.after = last, again.skip = skips;
-                                  trace_hits(scene, {.records = some}, last, again, mask);
-                                });
-}
-void filter_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
-                     std::span<std::uint8_t> occluded, const SceneHitFilter& filter,
-                     const TraceOptions& options, std::uint32_t mask) {
-  occluded_by_filter<SceneHit>("scene", rays, what, occluded, options,
-                               [&](const SceneHitView& hits, const TraceOptions& from_the_first) {
-                                 filter_scene_hits(scene, rays, hits, filter, from_the_first, mask);
-                               });
+auto filtered(const SceneParts& scene, const SceneHitFilter& filter, const TraceOptions& options,
+              std::uint32_t mask) {
+  const auto trace = [&scene, mask](RaySource rays, const SceneHitView& hits, const TraceOptions& by) {
+    require_exact_in_scene(by);
+    rays.skip = {};  // scenes read that of the options
+    trace_hits(scene, rays, hits, by, mask);
+  };
+  return FilteredCall<float, SceneHitFilter, TraceOptions, decltype(trace), SceneHit>{"scene", filter,
+                                                                                      options, trace};
 }
 
 void require_triangles(const Scene& scene, const TraceOptions& options) {
@@ -63,28 +49,23 @@ bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray r
 
 // Replaces hits that are no passages by the next ones that are.
 void keep_passages(const Scene& scene, const SceneParts& parts, const RaySource& rays,
-                   const SceneHitView& hits, TraceOptions options, std::uint32_t mask) {
+                   const SceneHitView& hits, const TraceOptions& options, std::uint32_t mask) {
   const QuietFloats quiet;
-  const PrimitiveView skip = options.skip;
   std::vector<std::optional<PassageJudge<float>>> judges(scene.geometry_count());
   const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const SceneHit> found,
                              std::span<std::uint8_t> rejected) {
     for (std::size_t k = 0; k < indices.size(); ++k) {
       std::optional<SkippedPrimitive> skipped;
-      if (skip.first != nullptr) skipped = skipped_at(skip, indices[k]);
+      if (rays.skip.first != nullptr) skipped = skipped_at(rays.skip, indices[k]);
       auto& judge = judges[found[k].geometry];
       if (!judge) judge.emplace(TreeOf::bvh(*scene.tree(found[k].geometry)), options);
       rejected[k] = is_passage(*judge, parts, rays[indices[k]], found[k], skipped, options) ? 0 : 1;
     }
   };
-  options.active = nullptr, options.progress = nullptr;
-  replace_turned_down<SceneHit>(
-      rays, hits, turn_down,
-      [&](const std::vector<Ray>& some, std::vector<SceneHit>& last,
-          const std::vector<std::size_t>& indices) {
-        const auto skips = skips_of(skip, indices);
-        options.after = last, options.skip = skips;
-        trace_hits(parts, {.records = some}, last, options, mask);
+  filter_hits<float>(
+      rays, hits, turn_down, options,
+      [&](const std::vector<Ray>& some, std::vector<SceneHit>& last, const TraceOptions& again) {
+        trace_hits(parts, {.records = some}, last, again, mask);
       },
       [](const SceneHit& hit) { return may_touch_edge(hit); });
 }
@@ -122,9 +103,8 @@ void require_after_in_scene(const TraceOptions& options, std::size_t rays) {
 SceneHit Scene::closest_crossing(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_triangles(*this, options);
   SceneHit hit = closest(ray, options, mask);
-  TraceOptions of_one = options;
-  of_one.active = nullptr;
-  keep_passages(*this, parts(), {.records = RayView(&ray, 1)}, SceneHitView(&hit, 1), of_one, mask);
+  keep_passages(*this, parts(), {.records = RayView(&ray, 1), .skip = options.skip}, SceneHitView(&hit, 1),
+                options, mask);
   return hit;
 }
 void Scene::closest_crossing(RayView rays, SceneHitView hits, const TraceOptions& options,
@@ -134,35 +114,30 @@ void Scene::closest_crossing(RayView rays, SceneHitView hits, const TraceOptions
   TraceOptions by = options;
   if (!kept.empty()) by.skip = kept;
   closest(rays, hits, by, mask);
-  keep_passages(*this, parts(), {.records = rays, .active = options.active}, hits, by, mask);
+  keep_passages(*this, parts(), {.records = rays, .active = options.active, .skip = by.skip}, hits, by, mask);
 }
 
 void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
                              const TraceOptions& options, std::uint32_t mask) const {
-  filter_scene_hits(parts(), {.records = rays, .active = options.active}, hits, filter, options, mask);
+  filtered(parts(), filter, options, mask).closest(rays, hits);
 }
 void Scene::filtered_closest(const RayArrays& rays, SceneHitView hits, const SceneHitFilter& filter,
                              const TraceOptions& options, std::uint32_t mask) const {
-  filter_scene_hits(parts(), {.arrays = &rays, .active = options.active}, hits, filter, options, mask);
+  filtered(parts(), filter, options, mask).closest(rays, hits);
 }
 void Scene::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const SceneHitFilter& filter,
                               const TraceOptions& options, std::uint32_t mask) const {
-  filter_occluded(parts(), {.records = rays, .active = options.active}, "rays", occluded, filter, options,
-                  mask);
+  filtered(parts(), filter, options, mask).occluded(rays, occluded);
 }
 void Scene::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                               const SceneHitFilter& filter, const TraceOptions& options,
                               std::uint32_t mask) const {
-  filter_occluded(parts(), {.arrays = &rays, .active = options.active}, "rays", occluded, filter, options,
-                  mask);
+  filtered(parts(), filter, options, mask).occluded(rays, occluded);
 }
 void Scene::filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                    const SceneHitFilter& filter, const SegmentEnds& ends,
                                    const TraceOptions& options, std::uint32_t mask) const {
-  require_points("scene", points);
-  const Segments segments{from, points, ends};
-  filter_occluded(parts(), {.segments = &segments, .active = options.active}, "points", occluded, filter,
-                  options, mask);
+  filtered(parts(), filter, options, mask).occluded_from(from, points, occluded, ends);
 }
 
 }  // namespace raylanes
