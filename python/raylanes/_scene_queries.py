@@ -101,8 +101,6 @@ class SceneQueries:
         ------
         ValueError
             If a geometry has spheres.
-        RuntimeError
-            If the scene was changed without update().
 
         Examples
         --------
@@ -130,11 +128,6 @@ class SceneQueries:
         -------
         ndarray of bool
             True for each ray that hits something with tmin <= t <= tmax, in the shape of rays.
-
-        Raises
-        ------
-        RuntimeError
-            If the scene was changed without update().
 
         Examples
         --------
@@ -168,11 +161,6 @@ class SceneQueries:
         -------
         ndarray of bool
             True for each point in shadow, in the shape of points without their last axis.
-
-        Raises
-        ------
-        RuntimeError
-            If the scene was changed without update().
 
         Examples
         --------
