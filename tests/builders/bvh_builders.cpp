@@ -59,14 +59,13 @@ TEST(EveryBuilder, takes_needles_and_slivers) {
 }
 
 TEST(EveryBuilder, takes_meshes_at_the_ends_of_floats) {
-  for (const float scale : {1e-44f, 1e-38f, 1e-12f, 1e12f, 1e37f}) {
-    SCOPED_TRACE(scale);
+  for (const float scaling : {1e-44f, 1e-38f, 1e-12f, 1e12f, 1e37f}) {
+    SCOPED_TRACE(scaling);
     Mesh mesh = triangle_soup(80, 0.9f, 22);
-    for (Float3& vertex : mesh.vertices)
-      for (float& x : vertex) x *= scale;
+    scale(mesh, scaling);
     expect_exact_hits(mesh, 60, 2);
     for (Float3& vertex : mesh.vertices) vertex[0] += 4e6f;
-    if (scale < 1e13f) expect_exact_hits(mesh, 60, 2, {4e6f, 0, 0});
+    if (scaling < 1e13f) expect_exact_hits(mesh, 60, 2, {4e6f, 0, 0});
   }
 }
 

@@ -78,8 +78,7 @@ TEST(Choice, is_said_in_a_line_that_names_it) {
 TEST(Choice, of_any_mesh_at_all) {
   Mesh equal = triangle_soup(1, 0.5f, 93), huge = triangle_soup(50, 0.5f, 94), points = huge;
   equal.triangles.assign(300, {0, 1, 2});
-  for (Float3& vertex : huge.vertices)
-    for (float& x : vertex) x *= 1e38f;
+  scale(huge, 1e38f);
   for (Float3& vertex : points.vertices) vertex = {1, 2, 3};
   for (const Mesh& mesh : {Mesh(), triangle_soup(1, 0.5f, 93), equal, huge, points})
     for (const double rays : {1.0, 1e9}) {

@@ -65,7 +65,7 @@ TEST(TriangleClipper, leaves_every_point_in_a_half) {
       for (float& x : corner) x *= size;
     Box4 box = box_around(triangle);
     for (int cuts = 0; cuts < 4; ++cuts) {
-      const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+      const auto axis = random.index(3);
       const float at = random.chance(0.2) ? triangle.corner[random.integer(0, 2)][axis]
                                           : static_cast<float>(random.real(box.lo[axis], box.hi[axis]));
       expect_covered(triangle, box, axis, at);

@@ -93,8 +93,7 @@ TEST(OcclusionOrder, what_hides_most_comes_first) {
 TEST(OcclusionOrder, of_boxes_without_an_area) {
   for (const float size : {1e-30f, 1e30f}) {
     Mesh mesh = triangle_soup(200, 0.4f, 93);
-    for (Float3& v : mesh.vertices)
-      for (float& x : v) x *= size;
+    scale(mesh, size);
     const Bvh bvh(mesh);
     std::size_t triangles = 0;
     for (const WideNode& node : bvh.view().nodes)

@@ -65,7 +65,7 @@ TEST(Bvh, flat_meshes_and_axis_aligned_rays) {
       Float3 origin, direction;
       for (float& x : origin) x = 0.5f * static_cast<float>(random.integer(-2, 18));
       for (float& x : direction) x = random.chance(0.5) ? 0.0f : -0.0f;
-      direction[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 1.0f : -1.0f;
+      direction[random.index(3)] = random.chance(0.5) ? 1.0f : -1.0f;
       rays.push_back(make_ray(origin, direction));
     }
     EXPECT_GT(expect_brute_force(mesh, rays), 10u);
@@ -96,13 +96,10 @@ TEST(Bvh, of_coincident_surfaces_in_any_order_the_smallest_primitive_wins) {
 TEST(Bvh, triangles_with_one_centre) {
   Mesh mesh;
   Random random(13);
-  for (std::uint32_t i = 0; i < 256; ++i) {
+  for (int i = 0; i < 256; ++i) {
     const Float3 half = random.point(1);
     // The box of these corners has its centre at 0.
-    mesh.vertices.push_back({-half[0], -half[1], -half[2]});
-    mesh.vertices.push_back(half);
-    mesh.vertices.push_back({half[0], -half[1], half[2]});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, {-half[0], -half[1], -half[2]}, half, {half[0], -half[1], half[2]});
   }
   EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(1000), 2, {0, 0, 0}, 14)), 10u);
 }
@@ -110,10 +107,9 @@ TEST(Bvh, triangles_with_one_centre) {
 TEST(Bvh, needles) {
   Mesh mesh;
   Random random(15);
-  for (std::uint32_t i = 0; i < 500; ++i) {
+  for (int i = 0; i < 500; ++i) {
     const Float3 a = random.point(1), b = random.point(1);
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, random.point(1e-6f, b)});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, a, b, random.point(1e-6f, b));
   }
   EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(2000), 2, {0, 0, 0}, 16)), 10u);
 }
@@ -136,14 +132,11 @@ TEST(Bvh, of_tiny_triangles_seen_from_far_away) {
 }
 
 TEST(Bvh, at_the_ends_of_the_usable_scale) {
-  for (const float scale : {1e-12f, 1e-6f, 1e6f, 1e12f}) {
-    SCOPED_TRACE(scale);
+  for (const float scaling : {1e-12f, 1e-6f, 1e6f, 1e12f}) {
+    SCOPED_TRACE(scaling);
     Mesh mesh = triangle_soup(200, 0.4f, 22);
-    for (Float3& vertex : mesh.vertices)
-      for (float& x : vertex) x *= scale;
     std::vector<Ray> rays = mixed_rays({}, by_level(1000), 0.5f, {0, 0, 0}, 23);
-    for (Ray& ray : rays)
-      for (float& x : ray.origin) x *= scale;
+    scale(mesh, scaling), scale(rays, scaling);
     EXPECT_GT(expect_brute_force(mesh, rays), 10u);
   }
 }
@@ -151,10 +144,9 @@ TEST(Bvh, at_the_ends_of_the_usable_scale) {
 // Each triangle half as large as the one before and beside it: splits by area take one off at a time.
 TEST(Bvh, a_chain_of_shrinking_triangles) {
   Mesh mesh;
-  for (std::uint32_t i = 0; i < 240; ++i) {
-    const float size = std::ldexp(1.0f, 100 - static_cast<int>(i));
-    mesh.vertices.insert(mesh.vertices.end(), {{size, 0, 0}, {1.5f * size, 0, 0}, {size, size / 4, 0}});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  for (int i = 0; i < 240; ++i) {
+    const float size = std::ldexp(1.0f, 100 - i);
+    append(mesh, {size, 0, 0}, {1.5f * size, 0, 0}, {size, size / 4, 0});
   }
   std::vector<Ray> rays;
   for (int exponent = 100; exponent >= -60; --exponent) {

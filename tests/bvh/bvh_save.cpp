@@ -84,14 +84,10 @@ TYPED_TEST(SavedTreeOf, wrong_parts_is_refused_though_its_checksum_is_right) {
       if (other != slot && !refers_to_leaf(root.child[other])) root.child[other] = root.child[slot];
   });
   expect_refused({"block", "exist"}, [](Inside& tree) {
-    for (WideNode& node : tree.nodes)
-      for (TreeReference& child : node.child)
-        if (child != empty_reference && refers_to_leaf(child)) child |= leaf_block_mask - 1;
+    each_leaf_reference(tree, [](TreeReference& leaf) { leaf |= leaf_block_mask - 1; });
   });
   expect_refused({"block", "has a triangle"}, [](Inside& tree) {
-    for (WideNode& node : tree.nodes)
-      for (TreeReference& child : node.child)
-        if (child != empty_reference && refers_to_leaf(child)) child |= 7u << 28;
+    each_leaf_reference(tree, [](TreeReference& leaf) { leaf |= 7u << 28; });
   });
   expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied = 0; });
   expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied |= 256; });
@@ -138,9 +134,7 @@ TEST(SavedTree, of_doubles_has_bounds_tests_builders_and_ends_of_leaves_of_its_o
   });
   // A leaf of two halves whose second one is another leaf, or behind the last one.
   expect_refused({"block"}, [](BvhDArrays& tree) {
-    for (WideNode& node : tree.nodes)
-      for (TreeReference& child : node.child)
-        if (child != empty_reference && refers_to_leaf(child)) child |= 4u << 28;
+    each_leaf_reference(tree, [](TreeReference& leaf) { leaf |= 4u << 28; });
   });
   expect_refused({"exist"}, [](BvhDArrays& tree) {
     const auto last = static_cast<std::uint32_t>(tree.halves.size() - 1);

@@ -154,13 +154,10 @@ TEST(Refit, to_a_point_to_a_plane_and_back) {
 
 TEST(Refit, to_the_ends_of_the_usable_scale) {
   const Mesh mesh = triangle_soup(200, 0.4f, 53);
-  for (const float scale : {1e-12f, 1e12f}) {
+  for (const float scaling : {1e-12f, 1e12f}) {
     Mesh scaled = mesh;
-    for (Float3& vertex : scaled.vertices)
-      for (float& x : vertex) x *= scale;
     std::vector<Ray> rays = mixed_rays({}, by_level(600), 0.5f, {0, 0, 0}, 54);
-    for (Ray& ray : rays)
-      for (float& x : ray.origin) x *= scale;
+    scale(scaled, scaling), scale(rays, scaling);
     Bvh bvh(mesh);
     bvh.refit(scaled.vertices, scaled.triangles);
     EXPECT_GT(expect_exact(bvh, scaled, rays), 10u);

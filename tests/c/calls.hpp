@@ -12,11 +12,16 @@ namespace raylanes::testing {
 template <class Number>
 struct CallsOf;
 // Names of functions and types; for doubles they have a d.
-#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d)                               \
+#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d, D)                            \
   template <>                                                                    \
   struct CallsOf<Number> {                                                       \
     using Handle = raylanes_bvh##d;                                              \
     using Tree = TreeOfNumber;                                                   \
+    using Trace = TraceOptions##D;                                               \
+    using Closest = ClosestPointOptions##D;                                      \
+    using Distances = SignedDistanceOptions##D;                                  \
+    using CRay = raylanes_ray##d;                                                \
+    using CHit = raylanes_hit##d;                                                \
     using CCrossing = raylanes_crossing##d;                                      \
     using CClosestPoint = raylanes_closest_point##d;                             \
     static constexpr auto create = raylanes_bvh##d##_create;                     \
@@ -38,8 +43,8 @@ struct CallsOf;
     static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances; \
     static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;   \
   }
-RAYLANES_CALLS_OF(float, Bvh, );
-RAYLANES_CALLS_OF(double, BvhD, d);
+RAYLANES_CALLS_OF(float, Bvh, , );
+RAYLANES_CALLS_OF(double, BvhD, d, D);
 #undef RAYLANES_CALLS_OF
 
 template <class Number>

@@ -17,9 +17,6 @@ template <class Number>
 struct World;
 template <>
 struct World<float> {
-  using Trace = TraceOptions;
-  using Closest = ClosestPointOptions;
-  using Distances = SignedDistanceOptions;
   explicit World(Bytes& bytes) : mesh(any_mesh(bytes)) {
     Coordinates coordinates(bytes);
     for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
@@ -30,9 +27,6 @@ struct World<float> {
 };
 template <>
 struct World<double> {
-  using Trace = TraceOptionsD;
-  using Closest = ClosestPointOptionsD;
-  using Distances = SignedDistanceOptionsD;
   explicit World(Bytes& bytes) : coordinates(bytes), mesh(any_double_mesh(bytes, coordinates)) {
     for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
       rays.push_back(any_double_ray(bytes, coordinates, mesh));
@@ -120,8 +114,7 @@ class Caller {
  private:
   void ask_rays(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
     const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size());
-    const auto trace =
-        arguments_.template ray_options_of_cpp<typename World<Number>::Trace>(world_.rays.size());
+    const auto trace = arguments_.template ray_options_of_cpp<typename C::Trace>(world_.rays.size());
     const auto list = arguments_.template ray_options_of_cpp<ListOptions>(world_.rays.size());
     const std::size_t gap = bytes_.below(max_gap);
     switch (kind) {
@@ -178,9 +171,8 @@ class Caller {
               return C::signed_distances(tree, rays, n, stride, static_cast<Number*>(distances), c);
             },
             [&](auto& distances) {
-              tree_.signed_distances(
-                  points, distances,
-                  arguments_.template point_options_of_cpp<typename World<Number>::Distances>());
+              tree_.signed_distances(points, distances,
+                                     arguments_.template point_options_of_cpp<typename C::Distances>());
             });
       case 9:
         return compare<Number>(
@@ -200,9 +192,8 @@ class Caller {
                                        static_cast<typename C::CClosestPoint*>(closest), c);
             },
             [&](auto& closest) {
-              tree_.closest_points(
-                  points, closest,
-                  arguments_.template point_options_of_cpp<typename World<Number>::Closest>());
+              tree_.closest_points(points, closest,
+                                   arguments_.template point_options_of_cpp<typename C::Closest>());
             });
     }
   }
@@ -307,27 +298,14 @@ int fuzz_c_calls(const std::uint8_t* data, std::size_t size) {
   const auto root = [](auto... arguments) { raylanes::sqrt(arguments...); };
   const auto reciprocal_root = [](auto... arguments) { raylanes::rsqrt(arguments...); };
   const auto reciprocal = [](auto... arguments) { raylanes::reciprocal(arguments...); };
-  switch (bytes.below(14)) {
-    case 0:
-      ask_roots<float>(bytes, raylanes_sqrt, root);
-      break;
-    case 1:
-      ask_roots<double>(bytes, raylanes_sqrtd, root);
-      break;
-    case 2:
-      ask_roots<float>(bytes, raylanes_rsqrt, reciprocal_root);
-      break;
-    case 3:
-      ask_roots<double>(bytes, raylanes_rsqrtd, reciprocal_root);
-      break;
-    case 4:
-      ask_roots<float>(bytes, raylanes_reciprocal, reciprocal);
-      break;
-    case 5:
-      ask_roots<double>(bytes, raylanes_reciprocald, reciprocal);
-      break;
-    default:
-      bytes.chance(128) ? ask_tree<float>(bytes) : ask_tree<double>(bytes);
-  }
+  const std::size_t kind = bytes.below(14);
+  kind == 0           ? ask_roots<float>(bytes, raylanes_sqrt, root)
+  : kind == 1         ? ask_roots<double>(bytes, raylanes_sqrtd, root)
+  : kind == 2         ? ask_roots<float>(bytes, raylanes_rsqrt, reciprocal_root)
+  : kind == 3         ? ask_roots<double>(bytes, raylanes_rsqrtd, reciprocal_root)
+  : kind == 4         ? ask_roots<float>(bytes, raylanes_reciprocal, reciprocal)
+  : kind == 5         ? ask_roots<double>(bytes, raylanes_reciprocald, reciprocal)
+  : bytes.chance(128) ? ask_tree<float>(bytes)
+                      : ask_tree<double>(bytes);
   return 0;
 }

@@ -21,17 +21,11 @@ template <class Number>
 struct Input;
 template <>
 struct Input<float> {
-  using Trace = TraceOptions;
-  using Closest = ClosestPointOptions;
-  using Distances = SignedDistanceOptions;
   Mesh mesh = triangle_soup(300, 0.3f, 11);
   std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 12);
 };
 template <>
 struct Input<double> {
-  using Trace = TraceOptionsD;
-  using Closest = ClosestPointOptionsD;
-  using Distances = SignedDistanceOptionsD;
   DoubleMesh mesh = moved(triangle_soup(300, 0.3f, 11), 3, {1e6, 0, -1e6});
   std::vector<RayD> rays = aimed_rays(mesh, count, 12);
 };
@@ -41,7 +35,6 @@ class CCalls : public ::testing::Test, public Input<Number> {
  public:
   using OfNumber = CallsOf<Number>;
   using HitOfNumber = HitOf<Number>;
-  using Trace = typename Input<Number>::Trace;
 
   typename OfNumber::Tree cpp_tree{this->mesh.vertices, this->mesh.triangles};
   TreeOfC<Number> tree_of_c = made<TreeOfC<Number>>([&](auto** tree_address) {
@@ -120,7 +113,7 @@ TYPED_TEST(CCalls, write_the_hits_of_the_classes) {
   using Hit = HitOf<TypeParam>;
   auto* const tree = this->tree_of_c.get();
   Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_ray_option<typename TestFixture::Trace>([&](const auto& c, const auto& options) {
+  this->template each_ray_option<typename C::Trace>([&](const auto& c, const auto& options) {
     this->template expect_same<Hit>(
         7,
         [&](auto& hits) {
@@ -153,12 +146,11 @@ TYPED_TEST(CCalls, write_the_hits_of_one_ray) {
     Apart<Hit> hit(1);
     std::uint8_t occluded = 7;
     const void* const given = ray.data();
-    using COfRay = std::conditional_t<std::is_same_v<TypeParam, float>, raylanes_ray, raylanes_rayd>;
-    using COfHit = std::conditional_t<std::is_same_v<TypeParam, float>, raylanes_hit, raylanes_hitd>;
-    ASSERT_EQ(C::closest1(tree, static_cast<const COfRay*>(given), static_cast<COfHit*>(hit.data()), c),
+    ASSERT_EQ(C::closest1(tree, static_cast<const typename C::CRay*>(given),
+                          static_cast<typename C::CHit*>(hit.data()), c),
               RAYLANES_OK);
     EXPECT_TRUE(same_bytes(hit.values()[0], expected)) << i;
-    ASSERT_EQ(C::occluded1(tree, static_cast<const COfRay*>(given), &occluded, c), RAYLANES_OK);
+    ASSERT_EQ(C::occluded1(tree, static_cast<const typename C::CRay*>(given), &occluded, c), RAYLANES_OK);
     EXPECT_EQ(occluded, is_occluded ? 1 : 0) << i;
   };
   std::vector<Hit> hits(count);
@@ -221,7 +213,7 @@ TYPED_TEST(CCalls, write_the_distances_of_the_classes) {
   using C = CallsOf<TypeParam>;
   auto* const tree = this->tree_of_c.get();
   Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_point_option<typename TestFixture::Distances>([&](const auto& c, const auto& options) {
+  this->template each_point_option<typename C::Distances>([&](const auto& c, const auto& options) {
     this->template expect_same<TypeParam>(
         0,
         [&](auto& distances) {
@@ -230,7 +222,7 @@ TYPED_TEST(CCalls, write_the_distances_of_the_classes) {
         },
         [&](auto& distances) { this->cpp_tree.signed_distances(this->points(), distances, options); });
   });
-  this->template each_point_option<typename TestFixture::Closest>([&](const auto& c, const auto& options) {
+  this->template each_point_option<typename C::Closest>([&](const auto& c, const auto& options) {
     this->template expect_same<ClosestPointOf<TypeParam>>(
         0,
         [&](auto& closest) {

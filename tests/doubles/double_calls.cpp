@@ -197,8 +197,7 @@ TEST(DoubleCalls, segments_longer_than_the_largest_double) {
   Random random(8);
   std::vector<Double3> points;
   for (int i = 0; i < 300; ++i) {
-    const Double3& at = mesh.vertices[static_cast<std::size_t>(
-        random.integer(0, static_cast<int>(mesh.vertices.size()) - 1))];
+    const Double3& at = mesh.vertices[random.index(mesh.vertices.size())];
     const double scale = i % 3 == 0 ? 1 : random.real(0.5, 1.2);  // to corners, or anywhere near them
     points.push_back({-1.7e308 * random.real(0.3, 1), scale * at[1], at[2] * random.real(-1, 1)});
     if (i % 3 == 1) points.back() = {-1.75e308, 1.2e308 - at[1], -at[2]};  // often through zero

@@ -16,14 +16,12 @@ Double3 mean(const DoubleCorners& corners, double u, double v) {
 Mesh lattice_soup(std::uint32_t triangles, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
-  const auto corner = [&] {
-    return Float3{static_cast<float>(random.integer(-3, 3)), static_cast<float>(random.integer(-3, 3)),
-                  static_cast<float>(random.integer(-3, 3))};
-  };
   for (std::uint32_t i = 0; i < triangles; ++i) {
-    const Float3 a = corner(), b = corner(), c = corner();
-    append(mesh, Triangle{{a, b, c}});
-    if (i % 5 == 0) append(mesh, Triangle{{a, b, c}});
+    Triangle triangle;
+    for (Float3& corner : triangle.corner)
+      for (float& x : corner) x = static_cast<float>(random.integer(-3, 3));
+    append(mesh, triangle);
+    if (i % 5 == 0) append(mesh, triangle);
   }
   return mesh;
 }
@@ -58,14 +56,11 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
     }
     return point;
   };
-  const auto some = [&](std::size_t n) {
-    return static_cast<std::size_t>(random.integer(0, static_cast<int>(n) - 1));
-  };
   std::vector<RayD> rays;
   while (rays.size() < count) {
-    const DoubleCorners corners = corners_of(mesh, some(mesh.triangles.size()));
+    const DoubleCorners corners = corners_of(mesh, random.index(mesh.triangles.size()));
     const double u = random.real(0, 1);
-    const Double3 targets[] = {corners[some(3)], mean(corners, u, 0), mean(corners, u, 1 - u),
+    const Double3 targets[] = {corners[random.index(3)], mean(corners, u, 0), mean(corners, u, 1 - u),
                                mean(corners, 0.5 * u, 0.25), any_point(1)};
     const Double3 target = targets[rays.size() % 5];
     const bool begins_there = random.chance(0.1);
@@ -80,8 +75,8 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
     if (pick < 0.1) ray.tmax = 1;
     if (pick > 0.9) ray.tmin = -std::numeric_limits<double>::infinity();
     if (pick > 0.8 && pick < 0.85) ray.tmin = 1;
-    if (random.chance(0.1)) ray.direction[some(3)] = 0;
-    if (random.chance(0.05)) ray.direction[some(3)] *= 0x1p-300;
+    if (random.chance(0.1)) ray.direction[random.index(3)] = 0;
+    if (random.chance(0.05)) ray.direction[random.index(3)] *= 0x1p-300;
     if (random.chance(0.03))
       for (double& x : ray.direction) x *= 0x1p-850;
     rays.push_back(ray);

@@ -77,28 +77,17 @@ TEST(DoubleClosestPoints, of_equal_distances_the_lowest_primitive) {
 // Numbers of all sizes in one mesh, and planes that are far thinner than their coordinates.
 TEST(DoubleClosestPoints, have_all_scales_at_once) {
   DoubleMesh mesh;
-  const auto append = [&](const Mesh& of_floats, double factor, const Double3& offset) {
-    const DoubleMesh part = moved(of_floats, factor, offset);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const Index3& t : part.triangles)
-      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  };
   for (const int exponent : {-1070, -900, -500, -100, 0, 100, 400, 900})
-    append(triangle_soup(12, 0.5f, 2721), std::ldexp(1.0, exponent), {0, 0, 0});
+    append(mesh, moved(triangle_soup(12, 0.5f, 2721), std::ldexp(1.0, exponent), {0, 0, 0}));
   DoubleMesh flat;
-  for (std::uint32_t i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const double y = i * 1e-300;
-    const Double3 corners[] = {{1e300, y, 0}, {1e300, y + 1e-300, 0}, {1e300, y, 1e-300}};
-    flat.vertices.insert(flat.vertices.end(), std::begin(corners), std::end(corners));
-    flat.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(flat, {1e300, y, 0}, {1e300, y + 1e-300, 0}, {1e300, y, 1e-300});
   }
   DoubleMesh far;  // seen from 2^62 sizes away, 2^70 from zero
-  for (std::uint32_t i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const double y = i % 7, z = i;
-    const Double3 corners[] = {{0x1p70, y, z}, {0x1p70, y + 1, z}, {0x1p70, y, z + 1}};
-    far.vertices.insert(far.vertices.end(), std::begin(corners), std::end(corners));
-    far.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(far, {0x1p70, y, z}, {0x1p70, y + 1, z}, {0x1p70, y, z + 1});
   }
   for (DoubleMesh* each : {&mesh, &flat, &far}) {
     std::vector<Double3> points = points_for(*each, by_level<std::size_t>(30, 90, 250), 29);

@@ -314,15 +314,14 @@ TEST(DoubleRays, filters_are_taken_by_every_call) {
     for (double& x : made) x = double{random.number(-1, 1)} + 1e-9 * double{random.number(-1, 1)};
     return made;
   };
-  std::vector<Double3> vertices;
-  std::vector<Index3> triangles;
-  for (std::uint32_t i = 0; i < by_level(150); ++i) {
-    for (int corner = 0; corner < 3; ++corner) vertices.push_back(point());
-    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  DoubleMesh mesh;
+  for (std::size_t i = 0; i < by_level(150); ++i) {
+    const Double3 a = point(), b = point(), c = point();
+    append(mesh, a, b, c);
   }
   std::vector<RayD> rays(by_level(200));
   for (RayD& ray : rays) ray.origin = point(), ray.direction = point();
-  const BvhD tree(vertices, triangles);
+  const BvhD tree = tree_of(mesh);
   for (const Path* path : paths_with_own_queries())
     expect_filtered<HitD>(tree, rays, TraceOptionsD{.path = path}, [&](const RayD& ray) {
       return tree.all_hits(std::vector<RayD>{ray}, {.path = &paths().front()}).items;

@@ -28,8 +28,7 @@ class Rows {
     return 0.5 * box_.lo[axis] + 0.5 * box_.hi[axis] + half * random_.real(-1.1, 1.1);
   }
   void add_row(std::size_t axis) {
-    const Double3& vertex = mesh_.vertices[static_cast<std::size_t>(
-        random_.integer(0, static_cast<int>(mesh_.vertices.size()) - 1))];
+    const Double3& vertex = mesh_.vertices[random_.index(mesh_.vertices.size())];
     Double3 point;
     for (std::size_t k = 0; k < 3; ++k) point[k] = random_.chance(0.3) ? vertex[k] : anywhere(k);
     std::vector<double> positions;
@@ -46,7 +45,7 @@ class Rows {
       }
     }
     for (std::size_t k = positions.size() - 1; k > 0; --k)
-      std::swap(positions[k], positions[static_cast<std::size_t>(random_.integer(0, static_cast<int>(k)))]);
+      std::swap(positions[k], positions[random_.index(k + 1)]);
     for (const double position : positions) point[axis] = position, points_.push_back(point);
   }
 

@@ -66,14 +66,10 @@ TEST(DoubleWindings, the_rules_agree_on_closed_meshes) {
 // Triangles without an area, so small that powers of distances in a large boundary are flushed.
 TEST(DoubleWindings, tiny_parts_of_a_large_boundary) {
   DoubleMesh mesh;
-  const auto add = [&](const Double3& a, const Double3& b, const Double3& c) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  };
   for (int i = 0; i < 8; ++i) {
     const double y = i, large = 0x1p300 * (1 + y);
-    add({-1, y, 0}, {1, y, 0}, {0, y, 0}), add({large, 0, 0}, {0, large, 0}, {0, 0, large});
+    append(mesh, {-1, y, 0}, {1, y, 0}, {0, y, 0});
+    append(mesh, {large, 0, 0}, {0, large, 0}, {0, 0, large});
   }
   expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p299, 0x1p298, 0x1p297}, {20, 1, 30}, {0, -40, 1}});
 }

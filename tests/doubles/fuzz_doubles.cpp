@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "../fuzz/any_doubles.hpp"
+#include "../fuzz/any_passages.hpp"
 #include "../fuzz/fence.hpp"
 #include "../fuzz/support.hpp"
-#include "../oracles/passage_oracle.hpp"
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "summed_windings.hpp"
@@ -47,29 +47,6 @@ void expect_hits(const BvhD& tree, const std::vector<RayD>& rays,
     if (!same_bytes(tree.closest(rays[i], alone), expected[i].empty() ? HitD() : expected[i][0]))
       fail(ray + "the nearest hit is wrong");
     if (!same_bytes(lists[i], expected[i])) fail(ray + "the list is wrong");
-  }
-}
-
-// The first passages; crossings are of all triangles and sides, of which `skip` leaves some out.
-void expect_passages(const BvhD& tree, const DoubleMesh& mesh, const std::vector<RayD>& rays,
-                     const std::vector<std::vector<CrossingD>>& crossings, const TraceOptionsD& options) {
-  std::vector<HitD> found(rays.size());
-  tree.closest_crossing(rays, found, options);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    std::vector<HitD> hits = exact_double_hits(mesh, rays[i]);
-    const std::vector<HitD> chosen = exact_double_hits(mesh, rays[i], options.facing);
-    std::erase_if(
-        hits, [&](const HitD& hit) { return options.skip.count > 0 && hit.primitive == options.skip[i]; });
-    HitD expected;
-    for (const HitD& hit : oracle_passages<Double3>(rays[i], hits, crossings[i],
-                                                    [&](std::uint32_t primitive, Double3(&corners)[3]) {
-                                                      const DoubleCorners all = corners_of(mesh, primitive);
-                                                      std::copy(all.begin(), all.end(), corners);
-                                                    }))
-      if (!expected && std::ranges::find(chosen, hit.primitive, &HitD::primitive) != chosen.end())
-        expected = hit;
-    if (!same_bytes(found[i], expected))
-      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": the first passage is wrong");
   }
 }
 
@@ -232,7 +209,7 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
     return 0;
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing, .skip = skip});
-  expect_passages(tree, mesh, rays, crossings, {.path = path, .facing = facing, .skip = skip});
+  expect_passages(tree, mesh, rays, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
   const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
   if (!skips && !rays.empty() && (streams || share_origin))
     expect_hits_of_many(tree, rays, streams ? 4100 : 80, hits, {.path = path, .facing = facing});

@@ -84,7 +84,7 @@ LatticeMesh lattice_mesh(Random& random, int reach) {
 }
 // Towards a corner, a point of an edge in quarters, or a corner from the plane of the first ones; some end at a corner.
 LatticeRay lattice_ray(Random& random, const LatticeMesh& mesh, int reach) {
-  const Index3& t = mesh.triangles[static_cast<std::size_t>(random.integer(0, 23))];
+  const Index3& t = mesh.triangles[random.index(24)];
   const Point &a = mesh.corners[t[0]], &b = mesh.corners[t[1]];
   LatticeRay ray{lattice_point(random, 2 * reach), {}, 0, 1 << 20};
   if (random.chance(0.1)) ray.origin[2] = 1;
@@ -92,7 +92,7 @@ LatticeRay lattice_ray(Random& random, const LatticeMesh& mesh, int reach) {
   const Integer share = random.integer(0, 4);
   ray.direction = (4 - share) * a + share * b - 4 * ray.origin;
   if (random.chance(0.1)) ray.direction = lattice_point(random, reach);
-  if (random.chance(0.1)) ray.direction[static_cast<std::size_t>(random.integer(0, 2))] = 0;
+  if (random.chance(0.1)) ray.direction[random.index(3)] = 0;
   if (random.chance(0.2)) ray.end = random.integer(1, 8);
   if (random.chance(0.2)) ray.begin = random.integer(-4, 4);
   return ray;

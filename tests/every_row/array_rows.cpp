@@ -190,13 +190,19 @@ TEST_P(EveryRow, of_triangles) {
   expect_all_counted(kernels_of(path()).triangles);
 }
 
-TEST_P(EveryRow, of_boxes) {
-  const auto ask = [](const auto& rays, const auto& boxes, const auto& options, std::size_t n, Answers& a) {
-    intervals(rays, boxes, a.bits_of(n), a.numbers(0, n), a.numbers(1, n), options);
+// Boxes and spheres, whose query writes two numbers; the other one whether there is a hit.
+template <class Query>
+auto ask_with(const Query& query) {
+  return [query](const auto& rays, const auto& primitives, const auto& options, std::size_t n, Answers& a) {
+    query(rays, primitives, a.bits_of(n), a.numbers(0, n), a.numbers(1, n), options);
     Answers yes_or_no;
-    hit_mask(rays, boxes, yes_or_no.bits_of(n), options);
+    hit_mask(rays, primitives, yes_or_no.bits_of(n), options);
     EXPECT_EQ(yes_or_no.bits, a.bits);
   };
+}
+
+TEST_P(EveryRow, of_boxes) {
+  const auto ask = ask_with([](const auto&... call) { intervals(call...); });
   for (const BoxTestInfo& info : box_tests) {
     check_shapes(path(), BoxOptions{.test = info.test}, info.name, false, RayColumns(), BoxColumns(), ask,
                  ask);
@@ -206,12 +212,7 @@ TEST_P(EveryRow, of_boxes) {
 }
 
 TEST_P(EveryRow, of_spheres) {
-  const auto ask = [](const auto& rays, const auto& spheres, const auto& options, std::size_t n, Answers& a) {
-    distances(rays, spheres, a.bits_of(n), a.numbers(0, n), a.numbers(1, n), options);
-    Answers yes_or_no;
-    hit_mask(rays, spheres, yes_or_no.bits_of(n), options);
-    EXPECT_EQ(yes_or_no.bits, a.bits);
-  };
+  const auto ask = ask_with([](const auto&... call) { distances(call...); });
   const auto ask_more = [&](const Ray& ray, const SphereArrays& all, const auto& options, std::size_t n,
                             Answers& a) {
     ask(ray, all, options, n, a);
@@ -229,11 +230,7 @@ TEST_P(EveryRow, of_spheres) {
   expect_all_counted(kernels_of(path()).spheres);
 }
 
-INSTANTIATE_TEST_SUITE_P(On, EveryRow, ::testing::ValuesIn(supported_paths()), [](const auto& parameter) {
-  std::string name = parameter.param->name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(On, EveryRow, ::testing::ValuesIn(supported_paths()), path_name);
 
 }  // namespace
 }  // namespace raylanes::testing

@@ -78,14 +78,9 @@ TEST_P(EachKdBuilder, serves_every_test_and_grade) {
   const std::vector<Ray> rays = mixed_rays(mesh, 200, 2, {0, 0, 0}, 12);
   const KdTree tree(mesh, {.builder = GetParam()});
   const Bvh bvh(mesh);
-  for (const TriangleTestInfo& test : triangle_tests) {
-    if (!test.serves_trees) continue;
-    for (const Grade grade : {Grade::reproducible, Grade::fast})
-      for (const TraceOptions& way : ways_to_trace({.test = test.test, .grade = grade})) {
-        const std::vector<Hit> hits = trace(tree, rays, way), expected = trace(bvh, rays, way);
-        EXPECT_TRUE(same_bytes(hits, expected)) << name_of(way);
-        EXPECT_EQ(trace_occluded(tree, rays, way), trace_occluded(bvh, rays, way)) << name_of(way);
-      }
+  for (const TraceOptions& way : ways_by_every_test()) {
+    EXPECT_TRUE(same_bytes(trace(tree, rays, way), trace(bvh, rays, way))) << name_of(way);
+    EXPECT_EQ(trace_occluded(tree, rays, way), trace_occluded(bvh, rays, way)) << name_of(way);
   }
 }
 

@@ -87,9 +87,7 @@ TEST_P(KdBuilders, end_where_sizes_differ_by_all_that_floats_hold) {
   for (std::uint32_t i = 0; i < 600; ++i) {
     const float size = std::ldexp(1.0f, -static_cast<int>(i % 120));
     const Float3 at = random.point(size);
-    mesh.vertices.insert(mesh.vertices.end(),
-                         {at, random.point(0.1f * size, at), random.point(0.1f * size, at)});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, Triangle{{at, random.point(0.1f * size, at), random.point(0.1f * size, at)}});
   }
   const KdTree tree(mesh, {.builder = GetParam()});
   EXPECT_LE(tree.report().depth, max_kd_depth);

@@ -57,11 +57,10 @@ TEST_P(KdPlanes, are_far_away) {
 }
 
 TEST_P(KdPlanes, are_met_at_any_size) {
-  for (const float scale : {1e-44f, 1e-38f, 1e-12f, 1e12f, 1e37f}) {
-    SCOPED_TRACE(scale);
+  for (const float scaling : {1e-44f, 1e-38f, 1e-12f, 1e12f, 1e37f}) {
+    SCOPED_TRACE(scaling);
     Mesh mesh = triangle_soup(80, 0.9f, 22);
-    for (Float3& vertex : mesh.vertices)
-      for (float& x : vertex) x *= scale;
+    scale(mesh, scaling);
     const std::vector<Ray> rays = mixed_rays(mesh, 60, 2, {0, 0, 0}, 36);
     const KdTree tree(mesh, {.builder = GetParam()});
     expect_hits(tree, rays, trace(Bvh(mesh), rays, {.mode = TraversalMode::single}));

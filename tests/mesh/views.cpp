@@ -163,11 +163,10 @@ TEST_F(BatchViews, runs_of_rays_that_share_an_origin) {
   Random random(53);
   std::vector<Ray> many;
   for (const int run : {200, 1, 63, 64, 65, 127, 128, 129, quick() ? 300 : 16'390, 500, 66}) {
-    for (int i = random.integer(0, 90); i > 0; --i)
-      many.push_back(rays[static_cast<std::size_t>(random.integer(0, 2999))]);
+    for (int i = random.integer(0, 90); i > 0; --i) many.push_back(rays[random.index(3000)]);
     const Float3 origin = random.point(2);
     for (int i = 0; i < run; ++i) {
-      many.push_back(rays[static_cast<std::size_t>(random.integer(0, 2999))]);
+      many.push_back(rays[random.index(3000)]);
       many.back().origin = origin;
     }
   }
@@ -188,7 +187,7 @@ TEST_F(BatchViews, batches_larger_than_streams) {
   Random random(52);
   const int count = static_cast<int>(by_level(150'000));
   for (int i = 0; i < count; ++i) {
-    Ray ray = rays[static_cast<std::size_t>(random.integer(0, 2999))];
+    Ray ray = rays[random.index(3000)];
     if (i < count / 5 * 2)
       for (float& x : ray.direction) x = x < 0 ? -x : x;
     many.push_back(ray);

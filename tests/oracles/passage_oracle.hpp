@@ -5,11 +5,21 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "../../bench/support/oracles/exact_doubles.hpp"
 #include "../queries/query_oracle.hpp"
 
 namespace raylanes::testing {
+
+inline std::vector<HitD> oracle_hits(const oracle::DoubleMesh& mesh, const RayD& ray,
+                                     Facing facing = Facing::any) {
+  return oracle::exact_double_hits(mesh, ray, facing);
+}
+inline std::vector<CrossingD> oracle_crossings(const oracle::DoubleMesh& mesh, const RayD& ray) {
+  return oracle::exact_double_crossings(mesh, ray);
+}
 
 // The corners of the edge that holds the point at which a ray meets the plane of a triangle: two, one of them where the
 // point is this corner, none between the edges.
@@ -35,10 +45,11 @@ std::set<Point> met_corners(const AnyRay& ray, const Point (&corners)[3]) {
   return met;
 }
 
-// corners_of(primitive, corners) sets three corners; hits and crossings are those that are there for the ray.
-template <class Point, class AnyRay, class AnyHit, class AnyCrossing, class CornersOf>
-std::vector<AnyHit> oracle_passages(const AnyRay& ray, const std::vector<AnyHit>& hits,
-                                    const std::vector<AnyCrossing>& crossings, const CornersOf& corners_of) {
+// Hits and crossings are those that are there for the ray.
+template <class AnyMesh, class AnyRay, class AnyHit, class AnyCrossing>
+std::vector<AnyHit> oracle_passages(const AnyMesh& mesh, const AnyRay& ray, const std::vector<AnyHit>& hits,
+                                    const std::vector<AnyCrossing>& crossings) {
+  using Point = typename decltype(mesh.vertices)::value_type;
   struct Passing {
     AnyHit hit;
     int side;
@@ -49,7 +60,7 @@ std::vector<AnyHit> oracle_passages(const AnyRay& ray, const std::vector<AnyHit>
     const auto own = std::ranges::find(crossings, hit.primitive, &AnyCrossing::primitive);
     if (own == crossings.end()) continue;
     Point corners[3];
-    corners_of(hit.primitive, corners);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[hit.primitive][k]];
     passing.push_back({hit, own->side, {corners, corners + 3}, met_corners(ray, corners)});
   }
   std::vector<AnyHit> passages;
@@ -67,25 +78,52 @@ std::vector<AnyHit> oracle_passages(const AnyRay& ray, const std::vector<AnyHit>
 }
 
 // The passages of all triangles but one.
-inline std::vector<Hit> oracle_passages(const Mesh& mesh, const Ray& ray,
-                                        std::uint32_t skipped = no_primitive) {
-  std::vector<Hit> hits = oracle_hits(mesh, ray);
-  std::erase_if(hits, [&](const Hit& hit) { return hit.primitive == skipped; });
-  return oracle_passages<Float3>(
-      ray, hits, oracle_crossings(mesh, ray), [&](std::uint32_t primitive, Float3(&corners)[3]) {
-        const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[primitive]);
-        std::copy_n(triangle.corner, 3, corners);
-      });
+template <class AnyMesh, class AnyRay>
+auto oracle_passages(const AnyMesh& mesh, const AnyRay& ray, std::uint32_t skipped = no_primitive) {
+  auto hits = oracle_hits(mesh, ray);
+  std::erase_if(hits, [&](const auto& hit) { return hit.primitive == skipped; });
+  return oracle_passages(mesh, ray, hits, oracle_crossings(mesh, ray));
 }
+
+// The rays of a mesh with their passages from any side: of all triangles, and of all but those to skip.
+template <class AnyMesh, class AnyRay>
+struct PassingRays {
+  using Hits = decltype(oracle_hits(AnyMesh(), AnyRay()));
+  AnyMesh mesh;
+  std::vector<AnyRay> rays;
+  std::vector<std::uint32_t> skip;  // of some rays the first or the last hit
+  std::vector<Hits> of_all, of_others;
+  std::size_t touches = 0;  // hits that are no passages
+
+  PassingRays(AnyMesh of, std::vector<AnyRay> along) : mesh(std::move(of)), rays(std::move(along)) {
+    for (const AnyRay& ray : rays) {
+      const Hits hits = oracle_hits(mesh, ray);
+      const std::size_t i = skip.size();
+      skip.push_back(hits.empty() || i % 3 == 0 ? no_primitive
+                                                : hits[i % 3 == 1 ? 0 : hits.size() - 1].primitive);
+      of_all.push_back(oracle_passages(mesh, ray)), of_others.push_back(oracle_passages(mesh, ray, skip[i]));
+      touches += hits.size() - of_all[i].size();
+    }
+  }
+  // Each ray's passages from the chosen side.
+  std::vector<Hits> passages(Facing facing, bool skips) const {
+    std::vector<Hits> all = skips ? of_others : of_all;
+    for (std::size_t i = 0; i < rays.size() && facing != Facing::any; ++i) {
+      const Hits sided = oracle_hits(mesh, rays[i], facing);
+      std::erase_if(all[i], [&](const auto& hit) {
+        return std::ranges::find(sided, hit.primitive, &Hits::value_type::primitive) == sided.end();
+      });
+    }
+    return all;
+  }
+};
 
 // From points that are multiples of a half to corners and middles of edges, which floats hold.
 inline std::vector<Ray> touching_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   Random random(seed);
   std::vector<Ray> rays;
   while (rays.size() < count) {
-    const auto some =
-        static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.triangles.size()) - 1));
-    const Triangle triangle = triangle_of(mesh.vertices, mesh.triangles[some]);
+    const Triangle triangle = random.triangle_of(mesh);
     const Float3 &a = triangle.corner[random.integer(0, 2)], &b = triangle.corner[random.integer(0, 2)];
     Float3 origin, direction;
     for (std::size_t axis = 0; axis < 3; ++axis) {

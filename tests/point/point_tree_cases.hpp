@@ -22,12 +22,9 @@ inline std::vector<Triangle> triangles_of(const Mesh& mesh) {
 }
 
 inline std::vector<Float3> points_for(const Mesh& mesh, std::size_t count, Random& random) {
-  const std::vector<Triangle> triangles = triangles_of(mesh);
   std::vector<Float3> points{{0, 0, 0}, {nan, 0, 0}, {0, infinity, 0}, {1e30f, -1e30f, 1e30f}};
-  while (points.size() < count && !triangles.empty())
-    points.push_back(any_point(
-        triangles[static_cast<std::size_t>(random.integer(0, static_cast<int>(triangles.size()) - 1))],
-        random));
+  while (points.size() < count && !mesh.triangles.empty())
+    points.push_back(any_point(random.triangle_of(mesh), random));
   return points;
 }
 
@@ -41,8 +38,7 @@ inline void expect_same(std::span<const ClosestPoint> found, std::span<const Clo
 }
 
 inline Mesh scaled(Mesh mesh, int exponent) {
-  for (Float3& v : mesh.vertices)
-    for (float& x : v) x = std::ldexp(x, exponent);
+  scale(mesh, std::ldexp(1.0f, exponent));
   return mesh;
 }
 
@@ -70,12 +66,9 @@ inline std::vector<NamedMesh> meshes() {
 // Points in clusters, so close to each other that they go through trees together, beside some that are alone, far off
 // or no numbers, and the same ones twice.
 inline std::vector<Float3> clusters(const Mesh& mesh, int count, int size, Random& random) {
-  const std::vector<Triangle> triangles = triangles_of(mesh);
   std::vector<Float3> points{{nan, 0, 0}, {-infinity, 0, 0}};
   for (int i = 0; i < count; ++i) {
-    const Float3 at = any_point(
-        triangles[static_cast<std::size_t>(random.integer(0, static_cast<int>(triangles.size()) - 1))],
-        random);
+    const Float3 at = any_point(random.triangle_of(mesh), random);
     const float off = random.chance(0.1) ? 0.0f : random.magnitude(0x1p-20f, 0.1f);
     for (int k = 0; k < size; ++k) points.push_back(random.point(off, at));
     if (random.chance(0.2)) points.push_back({0, nan, 0});

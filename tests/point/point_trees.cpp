@@ -81,8 +81,8 @@ TEST(ClosestPointsOfTrees, are_found_from_far_away) {
     for (const int exponent : {5, 6, 7, 10, 14, 20, 30, 39, 41}) {
       for (int i = 0; i < by_level(4, 8, 24); ++i) {
         Float3 point = random.point(1);
-        if (i % 4 == 1) point[static_cast<std::size_t>(random.integer(0, 2))] = 0;
-        if (i % 4 == 2) point = {0, 0, 0}, point[static_cast<std::size_t>(random.integer(0, 2))] = -1;
+        if (i % 4 == 1) point[random.index(3)] = 0;
+        if (i % 4 == 2) point = {0, 0, 0}, point[random.index(3)] = -1;
         for (std::size_t k = 0; k < 3; ++k) point[k] = bounds.lo[k] + std::ldexp(point[k] * extent, exponent);
         points.push_back(point);
       }

@@ -1,5 +1,10 @@
 """Meshes and rays that tests share, and trees of all kinds."""
 
+import copy
+import io
+import pickle
+import warnings
+
 import numpy as np
 
 import raylanes
@@ -12,6 +17,29 @@ supported = [path.name for path in raylanes.paths() if path.supported]
 cube_vertices = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
 cube_faces = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
                        [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]], np.int32)
+
+
+copies = [copy.copy, copy.deepcopy, *(lambda one, protocol=protocol: pickle.loads(pickle.dumps(one, protocol))
+                                      for protocol in range(2, 6))]
+
+
+def saved(tree):
+    file = io.BytesIO()
+    tree.save(file)
+    return file.getvalue()
+
+
+def same(a, b):
+    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def warnings_of(call):
+    """The texts of the MeshWarnings of a call; each is at a line of the file that the call is in."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    assert all(one.category is raylanes.MeshWarning and one.filename == call.__code__.co_filename for one in caught)
+    return [str(one.message) for one in caught]
 
 
 def cube(kind=raylanes.Bvh, **options):

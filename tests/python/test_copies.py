@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import raylanes
-from meshes import cube, cube_faces, cube_vertices, random_rays, sphere
+from meshes import copies, cube, cube_faces, cube_vertices, random_rays, sphere
 
 kinds = [raylanes.Bvh, raylanes.KdTree]
 
@@ -27,10 +27,6 @@ class NamedBvh(raylanes.Bvh):
 class Cached(raylanes.KdTree):
     def __getstate__(self):
         return {name: value for name, value in self.__dict__.items() if name != "cache"}
-
-
-copies = [copy.copy, copy.deepcopy, *(lambda tree, protocol=protocol: pickle.loads(pickle.dumps(tree, protocol))
-                                      for protocol in range(2, 6))]
 
 
 @pytest.mark.parametrize("kind", kinds)

@@ -11,15 +11,12 @@ import pytest
 
 import rational
 import raylanes
-from meshes import cube, cube_faces, cube_vertices, lattice, random_rays, sphere, supported
+from meshes import (copies, cube, cube_faces, cube_vertices, lattice, random_rays, same, saved, sphere, supported,
+                    warnings_of)
 
 wide = np.float64
 cube_doubles = cube_vertices.astype(wide)
 builders = ["median", "equal_partition", "binned_sah", "sweep_sah", "morton", "auto"]
-
-
-def same(a, b):
-    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
 def far_lattice(seed, offset):
@@ -33,20 +30,6 @@ def far_lattice(seed, offset):
     directions[::2] = (corners - origins)[::2]
     directions[np.all(directions == 0, axis=1)] = 1
     return vertices, faces, raylanes.rays(origins, directions, rays["tmin"], rays["tmax"])
-
-
-def saved(tree):
-    file = io.BytesIO()
-    tree.save(file)
-    return file.getvalue()
-
-
-def warnings_of(call):
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        call()
-    assert all(one.category is raylanes.MeshWarning and one.filename == __file__ for one in caught)
-    return [str(one.message) for one in caught]
 
 
 @pytest.mark.parametrize("given, wanted, expected", [
@@ -228,8 +211,7 @@ def test_refits_keep_the_type():
         tree.refit(vertices, faces[1:])
 
 
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda tree: raylanes.Bvh.load(io.BytesIO(saved(tree))),
-                                    *(lambda tree, p=p: pickle.loads(pickle.dumps(tree, p)) for p in range(2, 6))])
+@pytest.mark.parametrize("copied", [*copies, lambda tree: raylanes.Bvh.load(io.BytesIO(saved(tree)))])
 def test_copies_and_files(copied):
     vertices, faces, rays = far_lattice(3, (5e5, 4e6, 0))
     warnings.simplefilter("ignore", raylanes.MeshWarning)

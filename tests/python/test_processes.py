@@ -46,17 +46,35 @@ def status_of_child(work):
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
+def statuses_of_children(ask, work, count):
+    """The statuses of children that work while two threads of their parent ask again and again."""
+    ends = threading.Event()
+
+    def asks():
+        while not ends.is_set():
+            ask()
+
+    others = [threading.Thread(target=asks) for _ in range(2)]
+    for other in others:
+        other.start()
+    try:
+        return [status_of_child(work) for _ in range(count)]
+    finally:
+        ends.set()
+        for other in others:
+            other.join()
+
+
 @pytest.mark.parametrize("threads", [1, 0])
 def test_children_of_a_busy_program(threads):
     """The child of a fork has no other thread of its parent, and what these hold locked stays so."""
     vertices, faces = sphere()
     tree, rays = raylanes.Bvh(vertices, faces), random_rays(1, 20000)
-    expected, ends = tree.closest(rays).tobytes(), threading.Event()
+    expected = tree.closest(rays).tobytes()
 
     def ask():
-        while not ends.is_set():
-            tree.closest(rays, threads=threads)
-            tree.winding_numbers(rays["origin"][:100], threads=threads)
+        tree.closest(rays, threads=threads)
+        tree.winding_numbers(rays["origin"][:100], threads=threads)
 
     def work():
         asked = tree.closest(rays).tobytes() == expected
@@ -64,15 +82,7 @@ def test_children_of_a_busy_program(threads):
         new = raylanes.Bvh(vertices + np.float32(3), faces)
         return asked and tree.closest(rays).tobytes() == new.closest(rays, threads=2).tobytes() != expected
 
-    others = [threading.Thread(target=ask) for _ in range(2)]
-    for other in others:
-        other.start()
-    try:
-        assert [status_of_child(work) for _ in range(10)] == [0] * 10
-    finally:
-        ends.set()
-        for other in others:
-            other.join()
+    assert statuses_of_children(ask, work, 10) == [0] * 10
     assert tree.closest(rays).tobytes() == expected
 
 

@@ -5,11 +5,8 @@ import pytest
 
 import rational
 import raylanes
-from meshes import (any_bits, cube, cube_faces, cube_vertices, lattice, random_rays, sphere, supported, tree_kinds)
-
-
-def same(a, b):
-    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+from meshes import (any_bits, cube, cube_faces, cube_vertices, lattice, random_rays, same, sphere, supported,
+                    tree_kinds)
 
 
 @pytest.fixture(scope="module")

@@ -8,19 +8,10 @@ import pytest
 
 import raylanes
 import raylanes.trimesh
-from meshes import cube_faces, cube_vertices, lattice, sphere, tree_kinds
+from meshes import cube_faces, cube_vertices, lattice, sphere, tree_kinds, warnings_of
 
 kinds = [raylanes.Bvh, raylanes.KdTree]
 centre = [[0.0, 0.0, 0.0]]
-
-
-def warnings_of(call):
-    """The texts of the MeshWarnings of a call; each is at a line of this file."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        call()
-    assert all(one.category is raylanes.MeshWarning and one.filename == __file__ for one in caught)
-    return [str(one.message) for one in caught]
 
 
 @pytest.mark.parametrize("kind", kinds)

@@ -72,9 +72,7 @@ inline std::vector<Float3> points_of_chords(const std::vector<Float3>& corners, 
   for (std::size_t i = 0; i < corners.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       for (const float share : {0.25f, 0.5f, 0.75f}) points.push_back(between(corners[i], corners[j], share));
-  const auto corner = [&] {
-    return corners[static_cast<std::size_t>(random.integer(0, static_cast<int>(corners.size()) - 1))];
-  };
+  const auto corner = [&] { return corners[random.index(corners.size())]; };
   const float shares[] = {-0.25f, 0.25f, 0.5f, 1.25f};
   for (std::size_t i = 0; i < planes; ++i)
     points.push_back(between(between(corner(), corner(), 0.5f), corner(), shares[random.integer(0, 3)]));

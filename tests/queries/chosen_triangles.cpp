@@ -1,5 +1,6 @@
 // Hits of the triangles that a caller chooses, one side of them or all but one for each ray, in every query and mode:
 // rational numbers say which hits there are, and their sides.
+#include "../support/filtered.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
@@ -187,8 +188,7 @@ TEST(ChosenTriangles, of_slivers_and_rays_nearly_in_their_planes) {
     Float3 c;
     const float share = random.number(0, 1);
     for (std::size_t axis = 0; axis < 3; ++axis) c[axis] = a[axis] + share * (b[axis] - a[axis]);
-    for (const Float3& p : {a, b, c}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, a, b, c);
     // Along the longest edge, and across it at a corner.
     for (int k = 0; k < 2; ++k) {
       Ray ray = make_ray(a, {});
@@ -261,10 +261,6 @@ TEST(ChosenTriangles, of_shadows_and_filters) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       to_points.back().direction[axis] = ray.origin[axis] - light[axis];
   }
-  const HitFilter odd = [](std::span<const std::size_t>, std::span<const Hit> hits,
-                           std::span<std::uint8_t> rejected) {
-    for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = hits[k].primitive % 2 == 0 ? 1 : 0;
-  };
   const std::vector<std::uint32_t> skip = some_skips(mesh, to_points);
   const ExpectedOfChosen shadows[] = {{mesh, to_points, Facing::front},
                                       {mesh, to_points, Facing::back},
@@ -277,8 +273,8 @@ TEST(ChosenTriangles, of_shadows_and_filters) {
       tree.occluded_from(light, points, occluded, {0, 1}, options);
       EXPECT_EQ(occluded, in_shadow.occluded);
       std::vector<Hit> hits(rays.size());
-      tree.closest(rays, hits, odd, options);
-      tree.occluded(rays, occluded, odd, options);
+      tree.closest(rays, hits, reject_even<Hit>, options);
+      tree.occluded(rays, occluded, reject_even<Hit>, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit wanted;
         for (const Hit& hit : expected.hits[i])

@@ -6,8 +6,8 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../fuzz/any_mesh.hpp"
+#include "../fuzz/any_passages.hpp"
 #include "../fuzz/fence.hpp"
-#include "../oracles/passage_oracle.hpp"
 #include "../support/limited_memory.hpp"
 #include "../support/same_bytes.hpp"
 #include "summed_winding.hpp"
@@ -103,29 +103,6 @@ void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expe
         fail(std::string(path->name) + ": ray " + std::to_string(i) + ": next hit " + std::to_string(layer));
       some = some || hits[i];
     }
-  }
-}
-
-// The first passages, and those behind them, in place.
-template <class Tree>
-void expect_passages(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays, TraceOptions options) {
-  static Fence fence(max_queries * sizeof(Hit));
-  const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
-  for (std::size_t layer = 0; layer < 2; ++layer) {
-    tree.closest_crossing(rays, hits, options);
-    fence.expect_intact("passages");
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      std::vector<Hit> passages =
-          oracle_passages(mesh, rays[i], options.skip.count > 0 ? options.skip[i] : no_primitive);
-      std::erase_if(passages, [&](const Hit& hit) {
-        return options.facing != Facing::any &&
-               exact_side(mesh, rays[i], hit.primitive) != (options.facing == Facing::front ? -1 : 1);
-      });
-      if (!same_bytes(hits[i], layer < passages.size() ? passages[layer] : Hit()))
-        fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": passage " +
-             std::to_string(layer));
-    }
-    options.after = hits;
   }
 }
 
@@ -323,7 +300,8 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
     if (!flush) {
       expect_lists(tree, rays, expected,
                    {.max_count = most, .facing = facing, .path = path, .threads = threads, .skip = skip});
-      expect_passages(tree, mesh, rays, {.path = path, .threads = threads, .facing = facing, .skip = skip});
+      expect_passages(tree, mesh, rays,
+                      TraceOptions{.path = path, .threads = threads, .facing = facing, .skip = skip});
       return expect_next_hits(tree, rays, expected, path, facing, skip);
     }
     std::vector<Hit> passages(n);

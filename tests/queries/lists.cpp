@@ -67,11 +67,9 @@ TEST(Lists, at_scales_of_1e_30_and_1e30) {
 
 TEST(Lists, of_layers_that_are_1e_6_apart_at_coordinates_of_1e6) {
   Mesh mesh;
-  for (std::uint32_t i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const float z = 1e-6f * static_cast<float>(i);
-    for (const Float3& p : {Float3{1e6f - 4, 1e6f - 4, z}, {1e6f + 8, 1e6f - 4, z}, {1e6f - 4, 1e6f + 8, z}})
-      mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, {1e6f - 4, 1e6f - 4, z}, {1e6f + 8, 1e6f - 4, z}, {1e6f - 4, 1e6f + 8, z});
   }
   Random random(39);
   std::vector<Ray> rays;

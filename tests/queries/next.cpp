@@ -51,8 +51,7 @@ TEST(NextHit, peels_layers_that_round_to_one_t) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < by_level(30u, 60u, 60u); ++i) {
     const float z = std::ldexp(static_cast<float>(i % 20), -30);
-    for (const Float3& p : {Float3{-4, -4, z}, {8, -4, z}, {-4, 8, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, {-4, -4, z}, {8, -4, z}, {-4, 8, z});
   }
   Random random(67);
   std::vector<Ray> rays;
@@ -132,10 +131,7 @@ TEST(Filters, of_occluded_ignore_hits_to_look_behind) {
   const Mesh mesh = triangle_soup(200, 0.5f, 75);
   const std::vector<Ray> rays = aimed_rays(mesh, 100, 2, 76);
   const Bvh bvh(mesh);
-  const HitFilter filter = [](std::span<const std::size_t>, std::span<const Hit> found,
-                              std::span<std::uint8_t> rejected) {
-    for (std::size_t k = 0; k < found.size(); ++k) rejected[k] = found[k].primitive % 2 == 0;
-  };
+  const HitFilter filter = reject_even<Hit>;
   std::vector<std::uint8_t> expected(rays.size()), occluded(rays.size());
   bvh.occluded(rays, expected, filter);
   EXPECT_TRUE(std::ranges::count(expected, 1) > 5);

@@ -68,8 +68,7 @@ struct Round {
   Float3 direction(const Float3& point, std::size_t k, Random& random) const {
     if (k == 0) return {0, 0, 1};
     if (k == 1) return {-1, 0, 0};
-    const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
-                                                      0, static_cast<int>(mesh.triangles.size()) - 1))]);
+    const Triangle t = random.triangle_of(mesh);
     const bool middle = random.chance(0.5);
     Float3 way{};
     for (std::size_t axis = 0; axis < 3; ++axis)

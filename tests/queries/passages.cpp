@@ -7,36 +7,7 @@
 namespace raylanes::testing {
 namespace {
 
-struct PassingRays {
-  Mesh mesh;
-  std::vector<Ray> rays;
-  std::vector<std::uint32_t> skip;  // of some rays the first or the last hit
-  std::size_t touches = 0;          // hits that are no passages
-
-  PassingRays(Mesh of, std::vector<Ray> along) : mesh(std::move(of)), rays(std::move(along)) {
-    for (const Ray& ray : rays) {
-      const std::vector<Hit> hits = oracle_hits(mesh, ray);
-      const std::size_t i = skip.size();
-      skip.push_back(hits.empty() || i % 3 == 0 ? no_primitive
-                                                : hits[i % 3 == 1 ? 0 : hits.size() - 1].primitive);
-      touches += hits.size() - oracle_passages(mesh, ray).size();
-    }
-  }
-  // Each ray's passages from the chosen side.
-  std::vector<std::vector<Hit>> passages(Facing facing, bool skips) const {
-    std::vector<std::vector<Hit>> all;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      all.push_back(oracle_passages(mesh, rays[i], skips ? skip[i] : no_primitive));
-      std::erase_if(all.back(), [&](const Hit& hit) {
-        return facing != Facing::any &&
-               exact_side(mesh, rays[i], hit.primitive) != (facing == Facing::front ? -1 : 1);
-      });
-    }
-    return all;
-  }
-};
-
-void expect_passages(const PassingRays& of, bool also_flushed = true) {
+void expect_passages(const PassingRays<Mesh, Ray>& of, bool also_flushed = true) {
   std::size_t found = 0;
   for (const Facing facing : {Facing::any, Facing::front, Facing::back})
     for (const bool skips : {false, true}) {

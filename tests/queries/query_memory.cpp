@@ -77,12 +77,17 @@ std::size_t peak_of_memory(bool anew) {
   return peak;
 }
 
-// Entries of all rays would take 183 MB at once.
-TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
+class PeakOfMemory : public ::testing::Test {
+  void SetUp() override {
 #ifdef RAYLANES_SANITIZED
-  GTEST_SKIP() << "sanitizers take memory of their own";
+    GTEST_SKIP() << "sanitizers take memory of their own";
 #endif
-  if (!std::ifstream("/proc/self/status")) GTEST_SKIP() << "SKIPPED: no /proc tells what a process takes";
+    if (!std::ifstream("/proc/self/status")) GTEST_SKIP() << "SKIPPED: no /proc tells what a process takes";
+  }
+};
+
+// Entries of all rays would take 183 MB at once.
+TEST_F(PeakOfMemory, that_lists_take_at_a_time_has_a_bound) {
   const Mesh mesh = stack_of(100);
   std::vector<Ray> rays(65536, make_ray({5, 5, -1}, {0, 0, 1}));
   for (std::size_t i = 0; i < rays.size(); ++i)  // many after few, so that samples mislead
@@ -102,11 +107,7 @@ TEST(QueryMemory, that_lists_take_at_a_time_has_a_bound) {
 }
 
 // Entries of all rays would take 230 MB at once; some rays at a time have room for 32 MB.
-TEST(QueryMemory, that_long_lists_take_at_a_time_has_a_bound) {
-#ifdef RAYLANES_SANITIZED
-  GTEST_SKIP() << "sanitizers take memory of their own";
-#endif
-  if (!std::ifstream("/proc/self/status")) GTEST_SKIP() << "SKIPPED: no /proc tells what a process takes";
+TEST_F(PeakOfMemory, that_long_lists_take_at_a_time_has_a_bound) {
   const Bvh bvh(stack_of(2000), {.builder = TreeBuilder::spatial_splits});
   const std::vector<Ray> rays(4096, make_ray({0, 0, -1}, {0, 0, 1}));
   std::vector<CrossingCount> counts(rays.size());

@@ -114,15 +114,14 @@ inline std::vector<Float3> points_around(const Mesh& mesh, std::size_t count, fl
   while (points.size() < count) {
     Float3 point = random.point(reach);
     if (random.chance(0.6)) {
-      const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
-                                                        0, static_cast<int>(mesh.triangles.size()) - 1))]);
+      const Triangle t = random.triangle_of(mesh);
       const float shares[] = {0.0f, 0.25f, 0.5f};
       const float u = shares[random.integer(0, 2)], v = shares[random.integer(0, 2)];
       for (std::size_t axis = 0; axis < 3; ++axis)
         point[axis] = t.corner[0][axis] * (1 - u - v) + t.corner[1][axis] * u + t.corner[2][axis] * v;
     }
     if (random.chance(0.3)) {
-      float& x = point[static_cast<std::size_t>(random.integer(0, 2))];
+      float& x = point[random.index(3)];
       x = std::nextafter(x, random.chance(0.5) ? infinity : -infinity);
     }
     points.push_back(point);
@@ -137,7 +136,7 @@ inline std::vector<Float3> points_in_lines(const Mesh& mesh, std::size_t count, 
   std::vector<Float3> points;
   const std::vector<Float3> begins = points_around(mesh, count / 4, reach, seed + 1);
   for (std::size_t i = 0; points.size() < count; ++i) {
-    const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+    const auto axis = random.index(3);
     Float3 point = begins[i % begins.size()];
     for (int k = random.integer(1, 9); k > 0; --k) {
       points.push_back(point);
@@ -161,9 +160,7 @@ struct ScaledScene {
       : mesh(double_fan(12, 0.25f)) {
     append(mesh, triangle_soup(triangles, 0.5f, seed));
     rays = aimed_rays(mesh, by_level(aimed), 2, seed + 1);
-    scale(mesh, scaling);
-    for (Ray& ray : rays)
-      for (float& x : ray.origin) x *= scaling;
+    scale(mesh, scaling), scale(rays, scaling);
   }
   // Flushed t, u, v and products of small numbers are another matter: docs/exact.md, limits.
   static bool numbers_hold_at(float scaling) { return scaling > 1e-20f && scaling < 1e20f; }

@@ -53,7 +53,7 @@ std::vector<Ray> rays_of_all_kinds(const Mesh& mesh, std::size_t count) {
   std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 502);
   for (std::size_t i = 0; i < rays.size(); i += 3) {
     rays[i].direction = {0, 0, 0};
-    rays[i].direction[static_cast<std::size_t>(random.integer(0, 2))] = 1;
+    rays[i].direction[random.index(3)] = 1;
     if (i % 2 == 0) rays[i].origin = mesh.vertices[i % mesh.vertices.size()];
   }
   return rays;

@@ -65,8 +65,7 @@ class WindingsOf : public ::testing::Test {
   template <class... Ordinary>
   static void expect_in_both_orders(const auto& mesh, Points points, std::size_t count, Random& random,
                                     Ordinary... is_ordinary) {
-    for (std::size_t i = points.size(); i > 1; --i)
-      std::swap(points[i - 1], points[static_cast<std::size_t>(random.integer(0, static_cast<int>(i) - 1))]);
+    for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[random.index(i)]);
     points.resize(std::min(points.size(), count));
     EXPECT_GT(expect_windings(mesh, points, is_ordinary...), points.size() / 4);
     std::ranges::sort(points);
@@ -129,8 +128,7 @@ TYPED_TEST(WindingsOf, points_beside_chords_at_all_distances) {
   for (std::size_t i = 0; i < (this->has_floats ? by_level(600) : by_level<std::size_t>(30, 100, 300)); ++i) {
     PointOf<TypeParam> point;
     for (TypeParam& x : point) {
-      const double step =
-          steps[static_cast<std::size_t>(random.integer(0, static_cast<int>(steps.size()) - 1))];
+      const double step = steps[random.index(steps.size())];
       x = static_cast<TypeParam>(step * random.real(-2, 2));
     }
     points.push_back(point);
@@ -230,11 +228,8 @@ TYPED_TEST(WindingsOf, points_on_the_surface) {
 TYPED_TEST(WindingsOf, sheets_behind_a_point_at_the_least_distances) {
   constexpr TypeParam least = std::numeric_limits<TypeParam>::denorm_min();
   decltype(this->mesh_at(as_it_is, Mesh())) mesh;
-  for (const TypeParam height : {TypeParam{0}, least, -1024 * least}) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{-8, -8, height}, {8, -8, height}, {0, 8, height}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
+  for (const TypeParam height : {TypeParam{0}, least, -1024 * least})
+    append(mesh, {-8, -8, height}, {8, -8, height}, {0, 8, height});
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     for (const FloatMode mode : float_modes) {
       if (mode == FloatMode::flush && !this->has_floats) continue;

@@ -243,12 +243,7 @@ TEST_P(Accuracies, keep_their_bounds_for_all_normal_numbers_and_ieee_for_the_res
       });
 }
 
-INSTANTIATE_TEST_SUITE_P(OnEveryPath, Accuracies, ::testing::ValuesIn(supported_paths()),
-                         [](const ::testing::TestParamInfo<const Path*>& tested) {
-                           std::string name = tested.param->name;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Accuracies, ::testing::ValuesIn(supported_paths()), path_name);
 
 #define RAYLANES_COURSE(path) &detail::path##_course_roots,
 const bench::CourseRoots* const all_course_roots[] = {RAYLANES_EACH_PATH(RAYLANES_COURSE)};

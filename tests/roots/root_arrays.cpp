@@ -178,6 +178,13 @@ TYPED_TEST(RootArrays, leave_rounding_and_flush_modes_alone) {
     }
 }
 
+// With subnormals off.
+template <class T>
+std::vector<T> flushed_results(const NamedRoot<T>& root, const std::vector<T>& x) {
+  const FloatModeScope scope(FloatMode::flush);
+  return results(root.function, x);
+}
+
 // With subnormals off, those are zeros, and nothing else changes.
 TYPED_TEST(RootArrays, with_subnormals_off_take_them_as_zero) {
   using T = TypeParam;
@@ -188,12 +195,7 @@ TYPED_TEST(RootArrays, with_subnormals_off_take_them_as_zero) {
   for (std::size_t i = 0; i < x.size(); i += 5) zeroed[i] = 0;
   for (const NamedRoot<T>& root : all_roots<T>()) {
     if (root.depends_on_place()) continue;
-    const std::vector<T> expected = results(root.function, zeroed);
-    std::vector<T> y;
-    {
-      const FloatModeScope scope(FloatMode::flush);
-      y = results(root.function, x);
-    }
+    const std::vector<T> expected = results(root.function, zeroed), y = flushed_results(root, x);
     EXPECT_EQ(first_difference(y, expected), y.size()) << root.name;
   }
 }
@@ -205,12 +207,7 @@ TYPED_TEST(RootArrays, with_subnormals_off_keep_the_roots_of_the_least_normal_nu
   for (int i = 0; i < 496; ++i)
     x.push_back(std::numeric_limits<T>::min() * (T(1) + static_cast<T>(i) / T(16)));
   for (const NamedRoot<T>& root : all_roots<T>()) {
-    const std::vector<T> expected = results(root.function, x);
-    std::vector<T> y;
-    {
-      const FloatModeScope scope(FloatMode::flush);
-      y = results(root.function, x);
-    }
+    const std::vector<T> expected = results(root.function, x), y = flushed_results(root, x);
     EXPECT_EQ(first_difference(y, expected), y.size()) << root.name;
   }
 }

@@ -18,13 +18,11 @@ Scene scene_of_soups(Random& random, std::size_t instances) {
   Scene scene;
   for (int part = 0; part < 2; ++part) {
     Mesh mesh;
-    for (std::uint32_t i = 0; i < 60; ++i) {
-      for (int corner = 0; corner < 3; ++corner) {
-        Float3 v;
-        for (float& x : v) x = static_cast<float>(random.integer(-2, 2));
-        mesh.vertices.push_back(v);
-      }
-      mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (int i = 0; i < 60; ++i) {
+      Triangle triangle;
+      for (Float3& corner : triangle.corner)
+        for (float& x : corner) x = static_cast<float>(random.integer(-2, 2));
+      append(mesh, triangle);
     }
     scene.add(Bvh(mesh));
   }

@@ -1,4 +1,5 @@
 // Queries of scenes, of trees over boxes and of trees over spheres that tell how far they are.
+#include "../support/filtered.hpp"
 #include "../support/reports.hpp"
 #include "boxed_cases.hpp"
 #include "triangle_parts.hpp"
@@ -13,37 +14,23 @@ TEST(ReportedScenes, have_the_same_bytes) {
   std::vector<Float3> points;
   for (const Ray& ray : rays) points.push_back(ray.origin);
   for (const int threads : {1, 2}) {
-    expect_reported("closest", [&](const Progress* progress) {
-      std::vector<SceneHit> hits(rays.size());
+    expect_reported<SceneHit>("closest", rays.size(), [&](auto& hits, const Progress* progress) {
       parts.scene.closest(rays, hits, {.threads = threads, .progress = progress});
-      return bytes_of(hits);
     });
-    expect_reported("next", [&](const Progress* progress) {
-      std::vector<SceneHit> hits(rays.size());
+    expect_reported<SceneHit>("next", rays.size(), [&](auto& hits, const Progress* progress) {
       parts.scene.closest(rays, hits);
       parts.scene.closest(rays, hits, {.threads = threads, .after = hits, .progress = progress});
-      return bytes_of(hits);
     });
-    expect_reported("occluded", [&](const Progress* progress) {
-      std::vector<std::uint8_t> occluded(rays.size());
+    expect_reported<std::uint8_t>("occluded", rays.size(), [&](auto& occluded, const Progress* progress) {
       parts.scene.occluded(rays, occluded, {.threads = threads, .progress = progress});
-      return bytes_of(occluded);
     });
-    expect_reported("occluded_from", [&](const Progress* progress) {
-      std::vector<std::uint8_t> occluded(rays.size());
+    expect_reported<
+        std::uint8_t>("occluded_from", rays.size(), [&](auto& occluded, const Progress* progress) {
       parts.scene.occluded_from({1, 2, 3}, points, occluded, {}, {.threads = threads, .progress = progress});
-      return bytes_of(occluded);
     });
     // The shares of the first search alone, which end once.
-    expect_reported("closest by a filter", [&](const Progress* progress) {
-      std::vector<SceneHit> hits(rays.size());
-      parts.scene.closest(
-          rays, hits,
-          [](std::span<const std::size_t>, std::span<const SceneHit> some, std::span<std::uint8_t> rejected) {
-            for (std::size_t k = 0; k < some.size(); ++k) rejected[k] = some[k].primitive % 2 == 0 ? 1 : 0;
-          },
-          {.threads = threads, .progress = progress});
-      return bytes_of(hits);
+    expect_reported<SceneHit>("closest by a filter", rays.size(), [&](auto& hits, const Progress* progress) {
+      parts.scene.closest(rays, hits, reject_even<SceneHit>, {.threads = threads, .progress = progress});
     });
   }
 }
@@ -55,15 +42,11 @@ TEST(ReportedScenes, of_spheres_have_the_same_bytes) {
   const SphereTree tree(spheres);
   const std::vector<Ray> rays = mixed_rays({}, 3000, 2, {0, 0, 0}, 92);
   for (const int threads : {1, 2}) {
-    expect_reported("closest", [&](const Progress* progress) {
-      std::vector<Hit> hits(rays.size());
+    expect_reported<Hit>("closest", rays.size(), [&](auto& hits, const Progress* progress) {
       tree.closest(rays, hits, {.threads = threads, .progress = progress});
-      return bytes_of(hits);
     });
-    expect_reported("occluded", [&](const Progress* progress) {
-      std::vector<std::uint8_t> occluded(rays.size());
+    expect_reported<std::uint8_t>("occluded", rays.size(), [&](auto& occluded, const Progress* progress) {
       tree.occluded(rays, occluded, {.threads = threads, .progress = progress});
-      return bytes_of(occluded);
     });
   }
 }

@@ -1,5 +1,6 @@
 // Primitives that rays skip in scenes and trees of boxes: an instance and a primitive for each ray.
 #include "../queries/query_trees.hpp"
+#include "../support/filtered.hpp"
 #include "expect_scene.hpp"
 
 namespace raylanes::testing {
@@ -67,11 +68,7 @@ void expect_skipped(const Scene& scene) {
         ASSERT_TRUE(same_bytes(hits[i], wanted)) << "ray " << i << ", layer " << layer;
       }
     }
-    const auto odd = [](std::span<const std::size_t>, std::span<const SceneHit> found,
-                        std::span<std::uint8_t> rejected) {
-      for (std::size_t k = 0; k < found.size(); ++k) rejected[k] = found[k].primitive % 2 == 0 ? 1 : 0;
-    };
-    scene.closest(of.rays, hits, odd, options);
+    scene.closest(of.rays, hits, reject_even<SceneHit>, options);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       SceneHit wanted;
       for (const SceneHit& hit : of.left[i])

@@ -54,9 +54,8 @@ inline std::vector<Ray> rays_to_instances(const Scene& scene, std::size_t count,
     const Float3 from = random.point(reach);
     Float3 to = random.point(reach);
     if (scene.instance_count() > 0 && i % 4 != 0) {
-      const auto instance =
-          static_cast<std::uint32_t>(random.integer(0, static_cast<int>(scene.instance_count()) - 1));
-      const Transform transform = scene.transform_of(instance);
+      const Transform transform =
+          scene.transform_of(static_cast<std::uint32_t>(random.index(scene.instance_count())));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         to[axis] = transform.row[axis][3];
         for (int k = 0; k < 3; ++k) to[axis] += transform.row[axis][k] * random.number(-0.7f, 0.7f);

@@ -254,13 +254,7 @@ TEST_P(Vocabulary, lanes_left_out_are_not_touched_beside_guard_pages) {
   expect_all_untouched<double>(probes(), "double");
 }
 
-std::string name_of(const ::testing::TestParamInfo<const Path*>& tested) {
-  std::string name = tested.param->name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(OnEveryPath, Vocabulary, ::testing::ValuesIn(supported_paths()), name_of);
+INSTANTIATE_TEST_SUITE_P(OnEveryPath, Vocabulary, ::testing::ValuesIn(supported_paths()), path_name);
 
 }  // namespace
 }  // namespace testing

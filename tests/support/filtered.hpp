@@ -39,6 +39,13 @@ bool keeps(std::size_t ray, const AnyHit& hit) {
   return (hit.primitive * 7 + ray) % 3 == 0;
 }
 
+// A filter that rejects the hits of primitives with an even index.
+template <class AnyHit>
+void reject_even(std::span<const std::size_t>, std::span<const AnyHit> hits,
+                 std::span<std::uint8_t> rejected) {
+  for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = hits[k].primitive % 2 == 0 ? 1 : 0;
+}
+
 // The first hit that is kept, or a miss.
 template <class AnyHit>
 AnyHit first_kept(std::size_t ray, const std::vector<AnyHit>& all) {

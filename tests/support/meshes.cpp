@@ -22,8 +22,8 @@ Mesh triangle_soup(std::size_t count, float size, std::uint64_t seed) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Float3 centre = random.point(1);
-    for (int corner = 0; corner < 3; ++corner) mesh.vertices.push_back(random.point(size, centre));
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh,
+           Triangle{{random.point(size, centre), random.point(size, centre), random.point(size, centre)}});
   }
   return mesh;
 }
@@ -41,11 +41,9 @@ NeedlesAndSlivers needles_and_slivers(std::uint32_t count, std::uint64_t seed) {
   Random random(seed);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Float3 a = random.point(1), b = random.point(1);
-    meshes.needles.vertices.insert(meshes.needles.vertices.end(), {a, b, random.point(1e-6f, b)});
-    meshes.needles.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(meshes.needles, a, b, random.point(1e-6f, b));
     const float y = random.number(-1, 1);
-    meshes.across.vertices.insert(meshes.across.vertices.end(), {{-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1}});
-    meshes.across.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(meshes.across, {-1, y, -1}, {1, -y, 1}, {1, 0.01f - y, 1});
   }
   return meshes;
 }
@@ -55,25 +53,13 @@ Mesh triangles_beside_z() {
   Mesh mesh;
   for (std::uint32_t i = 0; i < 20; ++i) {
     const float y = 4.0f * static_cast<float>(i);
-    for (const Float3& corner : {Float3{side, y - 1, far}, Float3{side, y + 1, far}, Float3{1, y, far}})
-      mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, {side, y - 1, far}, {side, y + 1, far}, {1, y, far});
   }
   return mesh;
 }
 
 void append(Mesh& mesh, const Triangle& triangle) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Float3& corner : triangle.corner) mesh.vertices.push_back(corner);
-  mesh.triangles.push_back({first, first + 1, first + 2});
-}
-
-void append(Mesh& mesh, const Mesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  const Mesh added = other;
-  mesh.vertices.insert(mesh.vertices.end(), added.vertices.begin(), added.vertices.end());
-  for (const Index3& t : added.triangles)
-    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  append(mesh, triangle.corner[0], triangle.corner[1], triangle.corner[2]);
 }
 
 void scale(Mesh& mesh, float by) {
@@ -85,8 +71,7 @@ Mesh stack_of(std::uint32_t triangles) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < triangles; ++i) {
     const float z = 0.001f * static_cast<float>(i);
-    for (const Float3& p : {Float3{-1, -1, z}, {1, -1, z}, {0, 1, z}}) mesh.vertices.push_back(p);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    append(mesh, {-1, -1, z}, {1, -1, z}, {0, 1, z});
   }
   return mesh;
 }

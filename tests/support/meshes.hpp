@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
@@ -28,8 +29,22 @@ NeedlesAndSlivers needles_and_slivers(std::uint32_t count, std::uint64_t seed);
 Mesh triangles_beside_z();
 
 // Adds a triangle with corners of its own, or all triangles of another mesh, which may be the same.
+template <class AnyMesh, class Point = typename decltype(AnyMesh::vertices)::value_type>
+void append(AnyMesh& mesh, const std::type_identity_t<Point>& a, const std::type_identity_t<Point>& b,
+            const std::type_identity_t<Point>& c) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
 void append(Mesh& mesh, const Triangle& triangle);
-void append(Mesh& mesh, const Mesh& other);
+template <class AnyMesh>
+void append(AnyMesh& mesh, const AnyMesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const AnyMesh added = other;
+  mesh.vertices.insert(mesh.vertices.end(), added.vertices.begin(), added.vertices.end());
+  for (const Index3& t : added.triangles)
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
 // Multiplies all coordinates.
 void scale(Mesh& mesh, float by);
 

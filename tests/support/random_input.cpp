@@ -17,6 +17,10 @@ Triangle Random::triangle(float half, const Float3& centre) {
   return make_triangle(a, b, c);
 }
 
+Triangle Random::triangle_of(const Mesh& mesh) {
+  return testing::triangle_of(mesh.vertices, mesh.triangles[index(mesh.triangles.size())]);
+}
+
 float Random::magnitude(double least, double largest) {
   return static_cast<float>(std::exp(real(std::log(least), std::log(largest))));
 }
@@ -67,9 +71,7 @@ std::vector<Triangle> corner_orders(const Triangle& triangle) {
 namespace {
 
 Ray ray_at_mesh(const Mesh& mesh, const Float3& origin, bool at_corner, Random& random) {
-  const int last = static_cast<int>(mesh.triangles.size()) - 1;
-  const Triangle target =
-      triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(0, last))]);
+  const Triangle target = random.triangle_of(mesh);
   const double scale = random.magnitude(0.1, 10);
   return ray_to(origin, target, at_corner ? 0 : random.real(0, 1), 0, scale);
 }

@@ -30,6 +30,11 @@ class Random {
   // Each coordinate in [centre - half, centre + half).
   Float3 point(float half, const Float3& centre = {0, 0, 0});
   Triangle triangle(float half, const Float3& centre = {0, 0, 0});
+  // A triangle of the mesh, and the index of one of `count` elements.
+  Triangle triangle_of(const Mesh& mesh);
+  std::size_t index(std::size_t count) {
+    return static_cast<std::size_t>(integer(0, static_cast<int>(count) - 1));
+  }
   // Uniform in a logarithmic scale.
   float magnitude(double least, double largest);
 
@@ -41,6 +46,12 @@ Ray make_ray(const Float3& origin, const Float3& direction, float tmin = 0, floa
 Triangle make_triangle(const Float3& a, const Float3& b, const Float3& c);
 inline constexpr Triangle floor_triangle{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}};
 Triangle triangle_of(std::span<const Float3> vertices, const Index3& triangle);
+
+// Multiplies all origins.
+inline void scale(std::vector<Ray>& rays, float by) {
+  for (Ray& ray : rays)
+    for (float& x : ray.origin) x *= by;
+}
 
 // A ray from `origin` whose line passes the point with weights 1-u-v, u, v of the corners as closely as a
 // float direction can: the point is never rounded. It is reached at t = 1 / scale.

@@ -54,5 +54,14 @@ template <class Items>
 std::string bytes_of(const Items& items) {
   return {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(*items.data())};
 }
+// The same check where call(results, progress) writes so many results.
+template <class Result, class Call>
+void expect_reported(const std::string& name, std::size_t n, const Call& call) {
+  expect_reported(name, [&](const Progress* progress) {
+    std::vector<Result> results(n);
+    call(results, progress);
+    return bytes_of(results);
+  });
+}
 
 }  // namespace raylanes::testing

@@ -74,6 +74,13 @@ inline std::vector<const Path*> supported_paths() {
   return usable;
 }
 
+// For INSTANTIATE_TEST_SUITE_P.
+inline std::string path_name(const ::testing::TestParamInfo<const Path*>& tested) {
+  std::string name = tested.param->name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 // The kernels of a path, but other roots.
 inline KernelTable with_roots(const KernelTable& of, const RootKernels& roots) {
   return {roots,      of.triangles, of.boxes,   of.spheres, of.traversal, of.kdtree,

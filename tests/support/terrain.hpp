@@ -39,8 +39,7 @@ inline std::vector<Ray> rays_along_axes(const Mesh& mesh, std::size_t count, std
                                          0.0f};
   const Float3 along_floor[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0.5f, 0}, {-1, 1, 0}};
   while (rays.size() < count) {
-    const Triangle t = triangle_of(mesh.vertices, mesh.triangles[static_cast<std::size_t>(random.integer(
-                                                      0, static_cast<int>(mesh.triangles.size()) - 1))]);
+    const Triangle t = random.triangle_of(mesh);
     const float u = 0.5f * static_cast<float>(random.integer(0, 2)), v = random.chance(0.5) ? 1 - u : 0.0f;
     Float3 at;
     for (std::size_t k = 0; k < 3; ++k)

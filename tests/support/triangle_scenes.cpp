@@ -26,7 +26,7 @@ Ray ray_with_tied_axes(const Triangle& target, Random& random) {
   const float size = random.number(0.5f, 2);
   Float3 direction, origin;
   for (float& d : direction) d = random.chance(0.5) ? size : -size;
-  if (random.chance(0.7)) direction[static_cast<std::size_t>(random.integer(0, 2))] *= random.number(-1, 1);
+  if (random.chance(0.7)) direction[random.index(3)] *= random.number(-1, 1);
   const float u = random.number(-0.3f, 1), v = random.number(-0.3f, 1);
   const auto& [a, b, c] = target.corner;
   for (std::size_t axis = 0; axis < 3; ++axis)

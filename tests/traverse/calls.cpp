@@ -49,11 +49,11 @@ std::vector<Ray> all_kinds_of_rays(const Mesh& mesh) {
         ray.tmax = ends[random.integer(0, 7)];
         break;
       case 2:
-        ray.direction[static_cast<std::size_t>(random.integer(0, 2))] = sizes[random.integer(0, 7)];
+        ray.direction[random.index(3)] = sizes[random.integer(0, 7)];
         break;
       case 3:
         ray.direction = {0, 0, 0};
-        ray.direction[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 1.0f : -1.0f;
+        ray.direction[random.index(3)] = random.chance(0.5) ? 1.0f : -1.0f;
         for (float& x : ray.direction) x = x == 0.0f && random.chance(0.5) ? -0.0f : x;
         break;
       default:
@@ -146,9 +146,7 @@ TEST(Calls, in_flight_keep_what_waits_in_deep_trees) {
   Mesh mesh;
   for (int i = 0; i < 4000; ++i) {
     const float s = static_cast<float>(std::pow(0.98, i)), z = -0.001f * static_cast<float>(i);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{s, -s, z}, {-s, s, z}, {-0.9f * s, -0.9f * s, 1}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    append(mesh, {s, -s, z}, {-s, s, z}, {-0.9f * s, -0.9f * s, 1});
   }
   Random random(84);
   std::vector<Ray> rays;
@@ -193,8 +191,7 @@ TEST(Calls, in_grids) {
 TEST(Calls, follow_a_tree_that_grows) {
   Mesh mesh = triangle_soup(300, 0.3f, 77);
   Bvh bvh(mesh);
-  for (Float3& vertex : mesh.vertices)
-    for (float& x : vertex) x *= 1000;
+  scale(mesh, 1000);
   bvh.refit(mesh.vertices, mesh.triangles);
   expect_calls_as_batches(bvh, all_kinds_of_rays(mesh));
 }

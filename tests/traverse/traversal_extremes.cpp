@@ -21,19 +21,15 @@ namespace {
 // expect_brute_force; here they must be primitives of the mesh.
 void expect_own_primitives(const Mesh& mesh, const std::vector<Ray>& rays) {
   const Bvh bvh(mesh);
-  for (const TriangleTestInfo& test : triangle_tests) {
-    if (!test.serves_trees) continue;
-    for (const FloatMode mode : float_modes)
-      for (const Grade grade : {Grade::reproducible, Grade::fast})
-        for (const TraceOptions& options : ways_to_trace({.test = test.test, .grade = grade})) {
-          const FloatModeScope scope(mode);
-          for (const Hit& hit : trace(bvh, rays, options))
-            ASSERT_TRUE(hit.primitive < mesh.triangles.size() || hit.primitive == no_primitive)
-                << name_of(options) << ", " << name_of(mode);
-          for (const std::uint8_t occluded : trace_occluded(bvh, rays, options))
-            ASSERT_LE(occluded, 1) << name_of(options) << ", " << name_of(mode);
-        }
-  }
+  for (const FloatMode mode : float_modes)
+    for (const TraceOptions& options : ways_by_every_test()) {
+      const FloatModeScope scope(mode);
+      for (const Hit& hit : trace(bvh, rays, options))
+        ASSERT_TRUE(hit.primitive < mesh.triangles.size() || hit.primitive == no_primitive)
+            << name_of(options) << ", " << name_of(mode);
+      for (const std::uint8_t occluded : trace_occluded(bvh, rays, options))
+        ASSERT_LE(occluded, 1) << name_of(options) << ", " << name_of(mode);
+    }
 }
 
 // The slots without a child in the nodes of the mesh's tree.
@@ -129,17 +125,13 @@ TEST(BvhExtremes, an_infinite_distance_is_no_hit) {
   // 2 units away it is t = 2e38, 5 units away more than any float.
   EXPECT_EQ(expect_brute_force(mesh, rays), 17u);
   const Bvh bvh(mesh);
-  for (const TriangleTestInfo& test : triangle_tests) {
-    if (!test.serves_trees) continue;
-    for (const Grade grade : {Grade::reproducible, Grade::fast})
-      for (const TraceOptions& options : ways_to_trace({.test = test.test, .grade = grade})) {
-        const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
-        const std::vector<Hit> hits = trace(bvh, rays, options);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          EXPECT_EQ(occluded[i], hits[i].primitive != no_primitive) << name_of(options);
-          EXPECT_EQ(hits[i].primitive != no_primitive, std::isfinite(hits[i].t)) << name_of(options);
-        }
-      }
+  for (const TraceOptions& options : ways_by_every_test()) {
+    const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
+    const std::vector<Hit> hits = trace(bvh, rays, options);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(occluded[i], hits[i].primitive != no_primitive) << name_of(options);
+      EXPECT_EQ(hits[i].primitive != no_primitive, std::isfinite(hits[i].t)) << name_of(options);
+    }
   }
 }
 

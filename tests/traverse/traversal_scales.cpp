@@ -61,7 +61,7 @@ TEST(Scales, lose_no_hit) {
         SCOPED_TRACE("size 2^" + std::to_string(size) + " at 2^" + std::to_string(size + offset) +
                      ", directions 2^" + std::to_string(length));
         Mesh mesh = unit;
-        const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+        const auto axis = random.index(3);
         for (Float3& vertex : mesh.vertices) {
           for (float& x : vertex) x = std::ldexp(x, size);
           if (offset > 0) vertex[axis] += std::ldexp(1.0f, size + offset);
@@ -129,8 +129,7 @@ TEST(Scales, of_tiny_trees_take_few_triangle_tests) {
 TEST(Scales, lose_no_hit_where_coherent_packets_have_no_length) {
   for (const float size : {0x1p-120f, 0x1p-142f}) {
     Mesh mesh = integer_grid(6);
-    for (Float3& vertex : mesh.vertices)
-      for (float& x : vertex) x *= size;
+    scale(mesh, size);
     std::vector<Ray> rays;
     for (int i = 0; i < 144; ++i)
       rays.push_back(

@@ -49,18 +49,14 @@ struct Asked {
 
   void expect_rays() const {
     const std::size_t n = rays.size();
-    expect_reported("closest", [&](const Progress* progress) {
-      std::vector<HitOf<T>> hits(n);
+    expect_reported<HitOf<T>>("closest", n, [&](auto& hits, const Progress* progress) {
       tree.closest(rays, hits, reported<Trace>(threads, progress));
-      return bytes_of(hits);
     });
-    expect_reported("closest after", [&](const Progress* progress) {
-      std::vector<HitOf<T>> hits(n);
+    expect_reported<HitOf<T>>("closest after", n, [&](auto& hits, const Progress* progress) {
       tree.closest(rays, hits, reported<Trace>(threads, nullptr));
       auto options = reported<Trace>(threads, progress);
       options.after = hits, options.active = active.data();
       tree.closest(rays, hits, options);
-      return bytes_of(hits);
     });
     expect_reported("occluded", [&](const Progress* progress) {
       std::vector<std::uint8_t> occluded(n, 7);
@@ -69,10 +65,8 @@ struct Asked {
       tree.occluded(rays, occluded, options);
       return bytes_of(occluded);
     });
-    expect_reported("occluded_from", [&](const Progress* progress) {
-      std::vector<std::uint8_t> occluded(n);
+    expect_reported<std::uint8_t>("occluded_from", n, [&](auto& occluded, const Progress* progress) {
       tree.occluded_from({3, 3, 3}, points, occluded, {}, reported<Trace>(threads, progress));
-      return bytes_of(occluded);
     });
     expect_reported("all_hits", [&](const Progress* progress) {
       const auto lists = tree.all_hits(rays, reported<ListOptions>(threads, progress));
@@ -82,38 +76,28 @@ struct Asked {
       const auto lists = tree.crossings(rays, reported<ListOptions>(threads, progress));
       return bytes_of(lists.offsets) + bytes_of(lists.items);
     });
-    expect_reported("count_crossings", [&](const Progress* progress) {
-      std::vector<CrossingCount> counts(n);
+    expect_reported<CrossingCount>("count_crossings", n, [&](auto& counts, const Progress* progress) {
       tree.count_crossings(rays, counts, reported<ListOptions>(threads, progress));
-      return bytes_of(counts);
     });
   }
   void expect_points() const {
     const std::size_t n = points.size();
     for (const InsideRule rule : {InsideRule::parity, InsideRule::vote, InsideRule::winding})
-      expect_reported("locate", [&](const Progress* progress) {
-        std::vector<Location> locations(n);
+      expect_reported<Location>("locate", n, [&](auto& locations, const Progress* progress) {
         auto options = reported<LocateOptions>(threads, progress);
         options.rule = rule;
         tree.locate(points, locations, options);
-        return bytes_of(locations);
       });
-    expect_reported("winding_numbers", [&](const Progress* progress) {
-      std::vector<T> numbers(n);
+    expect_reported<T>("winding_numbers", n, [&](auto& numbers, const Progress* progress) {
       tree.winding_numbers(points, numbers, reported<WindingOptions>(threads, progress));
-      return bytes_of(numbers);
     });
-    expect_reported("closest_points", [&](const Progress* progress) {
-      std::vector<ClosestPointOf<T>> closest(n);
+    expect_reported<ClosestPointOf<T>>("closest_points", n, [&](auto& closest, const Progress* progress) {
       auto options = reported<Closest>(threads, progress);
       options.active = active.data();
       tree.closest_points(points, closest, options);
-      return bytes_of(closest);
     });
-    expect_reported("signed_distances", [&](const Progress* progress) {
-      std::vector<T> distances(n);
+    expect_reported<T>("signed_distances", n, [&](auto& distances, const Progress* progress) {
       tree.signed_distances(points, distances, reported<Distances>(threads, progress));
-      return bytes_of(distances);
     });
   }
 };
@@ -136,13 +120,12 @@ TYPED_TEST(ReportedQueries, order_many_points_in_steps) {
   const auto tree = built<TypeParam>(mesh);
   for (const int threads : {1, 2}) {
     const Asked<TypeParam> asked(tree, rays_for(mesh, 270005, 5), threads);
-    expect_reported("closest_points", [&](const Progress* progress) {
-      std::vector<ClosestPointOf<typename Asked<TypeParam>::T>> closest(asked.points.size());
-      auto options = reported<typename Asked<TypeParam>::Closest>(threads, progress);
-      options.active = asked.active.data();
-      tree.closest_points(asked.points, closest, options);
-      return bytes_of(closest);
-    });
+    expect_reported<ClosestPointOf<typename Asked<TypeParam>::T>>(
+        "closest_points", asked.points.size(), [&](auto& closest, const Progress* progress) {
+          auto options = reported<typename Asked<TypeParam>::Closest>(threads, progress);
+          options.active = asked.active.data();
+          tree.closest_points(asked.points, closest, options);
+        });
   }
 }
 

@@ -18,6 +18,10 @@
 namespace raylanes::testing {
 namespace {
 
+std::string refused(const auto& call) {
+  return message_of<std::invalid_argument>(call);
+}
+
 template <class Tree>
 class TreeErrors : public ::testing::Test {};
 TYPED_TEST_SUITE(TreeErrors, TreeKinds, TreeKindNames);
@@ -25,11 +29,11 @@ TYPED_TEST_SUITE(TreeErrors, TreeKinds, TreeKindNames);
 TYPED_TEST(TreeErrors, meshes_that_are_none) {
   const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};
-  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, bad); }), {"triangle 1", "3"});
+  expect_words(refused([&] { TypeParam(corners, bad); }), {"triangle 1", "3"});
   for (const float value : {nan, infinity, -infinity}) {
     std::vector<Float3> spoilt = corners;
     spoilt[2][1] = value;
-    expect_words(message_of<std::invalid_argument>([&] { TypeParam(spoilt, good); }), {"vertex 2", "y"});
+    expect_words(refused([&] { TypeParam(spoilt, good); }), {"vertex 2", "y"});
   }
 }
 
@@ -39,8 +43,8 @@ TYPED_TEST(TreeErrors, no_vertices_that_no_triangle_has) {
   const TypeParam tree(corners, good);
   EXPECT_EQ(tree.bounds().hi, (Float3{1, 1, 0}));
   EXPECT_TRUE(tree.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
-  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, bad); }), {"vertex 1", "x", "nan"});
-  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, far); }), {"triangle 0", "5"});
+  expect_words(refused([&] { TypeParam(corners, bad); }), {"vertex 1", "x", "nan"});
+  expect_words(refused([&] { TypeParam(corners, far); }), {"triangle 0", "5"});
 }
 
 // One triangle seen 2^28 + 1 times: refused before anything of that size is read or allocated.
@@ -49,7 +53,7 @@ TYPED_TEST(TreeErrors, more_triangles_than_references_can_name) {
   const std::uint32_t triangle[3] = {0, 1, 2};
   const IndexView many(triangle, (std::size_t{1} << 28) + 1, 0);
   const std::vector<std::string> words{"268435457", "2^28"};
-  expect_words(message_of<std::invalid_argument>([&] { TypeParam(corners, many); }), words);
+  expect_words(refused([&] { TypeParam(corners, many); }), words);
   TypeParam tree(corners, IndexView(triangle, 1));
   if constexpr (std::is_same_v<TypeParam, Bvh>) {
     EXPECT_THROW(tree.refit(corners, many), std::invalid_argument);
@@ -64,12 +68,10 @@ TYPED_TEST(TreeErrors, batches_and_threads) {
   std::vector<Hit> two_hits(2), hits(3);
   std::vector<std::uint8_t> four_flags(4), flags(3);
   const TraceOptions negative{.threads = -1};
-  expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, two_hits); }), {"3", "2"});
-  expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, four_flags); }), {"3", "4"});
-  expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, hits, negative); }),
-               {"-1", "thread"});
-  expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, flags, negative); }),
-               {"-1", "thread"});
+  expect_words(refused([&] { tree.closest(rays, two_hits); }), {"3", "2"});
+  expect_words(refused([&] { tree.occluded(rays, four_flags); }), {"3", "4"});
+  expect_words(refused([&] { tree.closest(rays, hits, negative); }), {"-1", "thread"});
+  expect_words(refused([&] { tree.occluded(rays, flags, negative); }), {"-1", "thread"});
 }
 
 TYPED_TEST(TreeErrors, enumerators_that_are_none) {
@@ -86,8 +88,8 @@ TYPED_TEST(TreeErrors, enumerators_that_are_none) {
   for (const auto& wrong : {std::pair{test, "test"}, {grade, "grade"}, {mode, "mode"}, {hint, "hint"}}) {
     const TraceOptions& options = wrong.first;
     const std::vector<std::string> words{wrong.second, "200"};
-    expect_words(message_of<std::invalid_argument>([&] { tree.closest(rays, hits, options); }), words);
-    expect_words(message_of<std::invalid_argument>([&] { tree.occluded(rays, flags, options); }), words);
+    expect_words(refused([&] { tree.closest(rays, hits, options); }), words);
+    expect_words(refused([&] { tree.occluded(rays, flags, options); }), words);
   }
 }
 
@@ -113,31 +115,28 @@ TYPED_TEST(TreeErrors, a_path_that_this_machine_lacks) {
   std::vector<Hit> hits(1);
   const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
   const TraceOptions options{.path = &foreign};
-  expect_words(message_of<std::invalid_argument>([&] {
-                 tree.closest({&ray, 1}, hits, options);
-               }),
-               {foreign.name});
+  expect_words(refused([&] { tree.closest({&ray, 1}, hits, options); }), {foreign.name});
 }
 
 TYPED_TEST(TreeErrors, tests_of_arrays) {
   const TypeParam tree(triangle_soup(3, 0.4f, 38));
   const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
   std::vector<Hit> hits(1);
-  std::size_t refused = 0;
+  std::size_t others = 0;
   for (const TriangleTestInfo& test : triangle_tests) {
     const TraceOptions options{.test = test.test};
     if (test.serves_trees) {
       EXPECT_EQ(tree.closest(ray, options).primitive, tree.closest(ray).primitive) << test.name;
       continue;
     }
-    ++refused;
+    ++others;
     const std::string message = "trace: the test " + std::string(test.name) +
                                 " is one for arrays; trees take exact, watertight, moller_trumbore";
-    EXPECT_EQ(message_of<std::invalid_argument>([&] { tree.closest(ray, options); }), message);
-    EXPECT_EQ(message_of<std::invalid_argument>([&] { tree.occluded(ray, options); }), message);
-    EXPECT_EQ(message_of<std::invalid_argument>([&] { tree.closest({&ray, 1}, hits, options); }), message);
+    EXPECT_EQ(refused([&] { tree.closest(ray, options); }), message);
+    EXPECT_EQ(refused([&] { tree.occluded(ray, options); }), message);
+    EXPECT_EQ(refused([&] { tree.closest({&ray, 1}, hits, options); }), message);
   }
-  EXPECT_EQ(refused, 5u);
+  EXPECT_EQ(others, 5u);
 }
 
 TYPED_TEST(TreeErrors, options_of_builds_that_are_none) {
@@ -147,11 +146,9 @@ TYPED_TEST(TreeErrors, options_of_builds_that_are_none) {
   for (const std::size_t builder : {builders, std::size_t{200}, std::size_t{255}}) {
     auto options = builds_of<TypeParam>().front().options;
     options.builder = static_cast<decltype(options.builder)>(builder);
-    expect_words(message_of<std::invalid_argument>([&] { TypeParam(mesh, options); }),
-                 {name, "builder", std::to_string(builder)});
+    expect_words(refused([&] { TypeParam(mesh, options); }), {name, "builder", std::to_string(builder)});
   }
-  expect_words(message_of<std::invalid_argument>([&] { TypeParam(mesh, {.threads = -1}); }),
-               {"-1", "thread"});
+  expect_words(refused([&] { TypeParam(mesh, {.threads = -1}); }), {"-1", "thread"});
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Float3 lattice_point(Random& random) {
 
 Float3 lattice_direction(Random& random) {
   const int major = 1 << random.integer(0, 3);
-  const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+  const auto axis = random.index(3);
   Float3 d;
   for (float& x : d) x = static_cast<float>(random.integer(-major, major));
   d[axis] = static_cast<float>(random.chance(0.5) ? major : -major);

@@ -139,7 +139,7 @@ TriangleScene integer_scene(Random& random) {
   for (int i = 0; i < 17; ++i) scene.triangles.push_back(make_triangle(point(), point(), point()));
   for (int i = 0; i < 17; ++i) {
     Float3 d = point();
-    d[static_cast<std::size_t>(random.integer(0, 2))] = random.chance(0.5) ? 4.0f : -4.0f;
+    d[random.index(3)] = random.chance(0.5) ? 4.0f : -4.0f;
     scene.rays.push_back(make_ray(point(), d, random.chance(0.5) ? 0.0f : -infinity));
   }
   return scene;

@@ -63,24 +63,13 @@ int fuzz_roots(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes::testing;
   Bytes bytes(data, size);
   const Path& path = *bytes.pick(fuzzed_paths());
-  switch (bytes.below(6)) {
-    case 0:
-      run_one_of(bytes, path, &RootKernels::sqrt, sqrt_methods);
-      break;
-    case 1:
-      run_one_of(bytes, path, &RootKernels::rsqrt, rsqrt_methods);
-      break;
-    case 2:
-      run_one_of(bytes, path, &RootKernels::reciprocal, reciprocal_methods);
-      break;
-    case 3:
-      run_one_of(bytes, path, &RootKernels::double_sqrt, double_sqrt_methods);
-      break;
-    case 4:
-      run_one_of(bytes, path, &RootKernels::double_rsqrt, double_rsqrt_methods);
-      break;
-    default:
-      run_one_of(bytes, path, &RootKernels::double_reciprocal, double_reciprocal_methods);
-  }
+  const std::size_t kind = bytes.below(6);
+  const auto run_one = [&](auto... root) { run_one_of(bytes, path, root...); };
+  kind == 0   ? run_one(&RootKernels::sqrt, sqrt_methods)
+  : kind == 1 ? run_one(&RootKernels::rsqrt, rsqrt_methods)
+  : kind == 2 ? run_one(&RootKernels::reciprocal, reciprocal_methods)
+  : kind == 3 ? run_one(&RootKernels::double_sqrt, double_sqrt_methods)
+  : kind == 4 ? run_one(&RootKernels::double_rsqrt, double_rsqrt_methods)
+              : run_one(&RootKernels::double_reciprocal, double_reciprocal_methods);
   return 0;
 }

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import raylanes
-from meshes import cube, cube_faces, cube_vertices, random_rays, sphere
+from meshes import copies, cube, cube_faces, cube_vertices, random_rays, sphere
 from parts import Parts, nearest
 
-copies = [copy.copy, copy.deepcopy, *(lambda scene, protocol=protocol: pickle.loads(pickle.dumps(scene, protocol))
-                                      for protocol in range(2, 6))]
 rays = random_rays(1, 600, reach=4)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import raylanes
 from meshes import cube_faces, cube_vertices, random_rays, sphere
-from test_processes import status_of_child
+from test_processes import statuses_of_children
 from test_sharing import turns_during
 
 rays = random_rays(1, 3000, reach=4)
@@ -118,13 +118,8 @@ def test_others_run_while_the_library_works():
 
 
 def test_children_of_a_busy_program():
-    scene, ends = scene_of(), threading.Event()
-    spheres = raylanes.SphereTree([[0, 0, 0]], 1)
+    scene, spheres = scene_of(), raylanes.SphereTree([[0, 0, 0]], 1)
     expected, of_spheres = scene.closest(rays).tobytes(), spheres.closest(rays).tobytes()
-
-    def ask():
-        while not ends.is_set():
-            scene.closest(rays), spheres.closest(rays)
 
     def work():
         asked = scene.closest(rays).tobytes() == expected and spheres.closest(rays).tobytes() == of_spheres
@@ -133,15 +128,7 @@ def test_children_of_a_busy_program():
         scene.update()
         return asked and scene.closest(rays, threads=2).tobytes() != expected
 
-    others = [threading.Thread(target=ask) for _ in range(2)]
-    for other in others:
-        other.start()
-    try:
-        assert [status_of_child(work) for _ in range(5)] == [0] * 5
-    finally:
-        ends.set()
-        for other in others:
-            other.join()
+    assert statuses_of_children(lambda: (scene.closest(rays), spheres.closest(rays)), work, 5) == [0] * 5
     assert scene.closest(rays).tobytes() == expected
 
 

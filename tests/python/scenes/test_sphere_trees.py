@@ -1,13 +1,12 @@
 """Trees over spheres alone: their arrays, copies and errors."""
 
-import copy
 import pickle
 
 import numpy as np
 import pytest
 
 import raylanes
-from meshes import random_rays, supported
+from meshes import copies, random_rays, supported
 
 random = np.random.default_rng(2)
 centres, radii = random.uniform(-1, 1, (200, 3)).astype(np.float32), random.uniform(0.01, 0.2, 200).astype(np.float32)
@@ -73,8 +72,7 @@ def test_answers_go_where_they_are_wanted():
     assert not tree.closest(rays, active=active).hit[~active].any()
 
 
-@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, *(
-    lambda tree, protocol=protocol: pickle.loads(pickle.dumps(tree, protocol)) for protocol in range(2, 6))])
+@pytest.mark.parametrize("copied", copies)
 def test_copies_and_pickles(copied):
     tree = raylanes.SphereTree(centres, radii, builder="morton")
     tree.names = ["a"]

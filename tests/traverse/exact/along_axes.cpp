@@ -59,10 +59,7 @@ TEST(AlongAxes, lists_of_many_rays_in_a_floor) {
   });
   for (std::size_t i = 0; i < walls; ++i) {
     const float x = 5.0f * static_cast<float>(i) + 2.25f;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Float3& corner : {Float3{x, -200, -9}, Float3{x, 200, -9}, Float3{x, 30, 90}})
-      mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    append(mesh, {x, -200, -9}, {x, 200, -9}, {x, 30, 90});
   }
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < rays_for_streams; ++i)

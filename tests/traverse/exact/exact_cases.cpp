@@ -21,12 +21,11 @@ Ray aimed(Random& random, const Float3& origin, const Triangle& target, double u
 // At the corners, the edges and the insides of triangles.
 void aim_at_all(ExactCase& c, Random& random, float reach, const Float3& centre) {
   for (std::size_t i = 0; i < rays_of_a_case; ++i) {
-    const auto t = static_cast<std::size_t>(random.integer(0, static_cast<int>(c.mesh.triangles.size()) - 1));
+    const Triangle t = random.triangle_of(c.mesh);
     const double u = i % 3 == 0 ? 0 : random.real(0, 1), v = i % 4 == 0   ? 0
                                                              : i % 4 == 1 ? 1 - u
                                                                           : random.real(0, 1 - u);
-    c.rays.push_back(
-        aimed(random, random.point(reach, centre), triangle_of(c.mesh.vertices, c.mesh.triangles[t]), u, v));
+    c.rays.push_back(aimed(random, random.point(reach, centre), t, u, v));
   }
 }
 
@@ -48,11 +47,7 @@ Mesh strip(Random& random, int cells, double size, double slope) {
 // From one point of the plane, or as high above it, to another, as closely as floats can.
 void aim_along(ExactCase& c, Random& random, float height = 0) {
   for (std::size_t i = 0; i < rays_of_a_case; ++i) {
-    const auto any = [&] {
-      const auto t =
-          static_cast<std::size_t>(random.integer(0, static_cast<int>(c.mesh.triangles.size()) - 1));
-      return triangle_of(c.mesh.vertices, c.mesh.triangles[t]);
-    };
+    const auto any = [&] { return random.triangle_of(c.mesh); };
     Float3 from = ray_to({0, 0, 0}, any(), random.real(-1, 2), random.real(-1, 2)).direction;
     from[2] += random.number(0, height);
     c.rays.push_back(aimed(random, from, any(), random.real(0, 1), random.real(0, 0.5)));
@@ -60,10 +55,9 @@ void aim_along(ExactCase& c, Random& random, float height = 0) {
 }
 
 void scale(ExactCase& c, float factor) {
-  for (Float3& vertex : c.mesh.vertices)
-    for (float& x : vertex) x *= factor;
+  testing::scale(c.mesh, factor), testing::scale(c.rays, factor);
   for (Ray& ray : c.rays)
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.origin[axis] *= factor, ray.direction[axis] *= factor;
+    for (float& x : ray.direction) x *= factor;
 }
 
 const Float3 far_away{148376, 1234, -223423};
@@ -89,13 +83,12 @@ const ExactSet sets[] = {
     {"slivers",
      [](Random& random) {
        ExactCase c;
-       for (std::uint32_t i = 0; i < 24; ++i) {
+       for (int i = 0; i < 24; ++i) {
          const Float3 a = random.point(1), b = random.point(1);
          const float width = random.magnitude(1e-9, 1e-1);
          Float3 near_b = b;
          for (float& x : near_b) x += random.number(-width, width);
-         for (const Float3& p : {a, b, near_b}) c.mesh.vertices.push_back(p);
-         c.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+         append(c.mesh, a, b, near_b);
        }
        aim_at_all(c, random, 2, {0, 0, 0});
        return c;
@@ -161,7 +154,7 @@ const ExactSet sets[] = {
          const Triangle target = triangle_of(c.mesh.vertices, c.mesh.triangles[i % 17]);
          const double u = random.real(0, 1);
          Float3 origin = ray_to({0, 0, 0}, target, u, i % 2 == 0 ? 0 : 1 - u).direction;
-         const auto major = static_cast<std::size_t>(random.integer(0, 2));
+         const auto major = random.index(3);
          for (std::size_t axis = 0; axis < 3; ++axis)
            origin[axis] += axis == major ? random.number(0.5f, 2) : random.number(-0x1p-6f, 0x1p-6f);
          Ray ray = aimed(random, origin, target, u, i % 2 == 0 ? 0 : 1 - u);
@@ -177,10 +170,7 @@ const ExactSet sets[] = {
        ExactCase c;
        const auto number = [&] { return std::ldexp(random.number(-1, 1), random.integer(-30, 30)); };
        const auto point = [&] { return Float3{number(), number(), number()}; };
-       for (std::uint32_t i = 0; i < 16; ++i) {
-         for (int corner = 0; corner < 3; ++corner) c.mesh.vertices.push_back(point());
-         c.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-       }
+       for (int i = 0; i < 16; ++i) append(c.mesh, Triangle{{point(), point(), point()}});
        for (std::size_t i = 0; i < rays_of_a_case; ++i) {
          const Triangle target = triangle_of(c.mesh.vertices, c.mesh.triangles[i % 16]);
          c.rays.push_back(aimed(random, point(), target, random.real(0, 1), random.real(0, 0.4)));

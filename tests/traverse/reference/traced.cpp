@@ -23,6 +23,15 @@ std::vector<TraceOptions> ways_to_trace(const TraceOptions& base) {
   return ways;
 }
 
+std::vector<TraceOptions> ways_by_every_test() {
+  std::vector<TraceOptions> ways;
+  for (const TriangleTestInfo& info : triangle_tests)
+    for (const Grade grade : {Grade::reproducible, Grade::fast})
+      for (const TraceOptions& way : ways_to_trace({.test = info.test, .grade = grade}))
+        if (info.serves_trees) ways.push_back(way);
+  return ways;
+}
+
 std::string name_of(const TraceOptions& options) {
   const auto pick = [](const auto& names, auto value) {
     return " " + std::string(names[static_cast<std::size_t>(value)]);

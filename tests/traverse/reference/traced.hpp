@@ -12,6 +12,9 @@ namespace raylanes::testing {
 // Every mode that has kernels on every supported path, one thread; the rest as in `base`.
 std::vector<TraceOptions> ways_to_trace(const TraceOptions& base = {});
 
+// The same with every test of trees in both grades.
+std::vector<TraceOptions> ways_by_every_test();
+
 // For messages: path, mode, test, grade, threads.
 std::string name_of(const TraceOptions& options);
 
