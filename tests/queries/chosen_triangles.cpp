@@ -6,14 +6,14 @@
 namespace raylanes::testing {
 namespace {
 
-// A primitive for each ray: mostly that of its nearest hit, of some rays another one or none.
+// A primitive for each ray: mostly that of its nearest hit or the next, of some rays another one or none.
 std::vector<std::uint32_t> some_skips(const Mesh& mesh, const std::vector<Ray>& rays) {
   std::vector<std::uint32_t> skip;
   for (const Ray& ray : rays) {
     const std::vector<Hit> hits = oracle_hits(mesh, ray);
-    const std::size_t i = skip.size();
+    const std::size_t i = skip.size(), last = std::max<std::size_t>(hits.size(), 1) - 1;
     skip.push_back(i % 5 == 4 || hits.empty() ? (i % 2 == 0 ? no_primitive : static_cast<std::uint32_t>(i))
-                                              : hits[i % 7 == 6 ? hits.size() - 1 : 0].primitive);
+                                              : hits[i % 7 == 6 ? last : std::min(i % 2, last)].primitive);
   }
   return skip;
 }

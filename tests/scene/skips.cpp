@@ -14,7 +14,7 @@ std::vector<Ray> some_rays(std::uint64_t seed) {
   return rays;
 }
 
-// Rays that skip their nearest hit, another one of theirs, the same primitive of another instance, or nothing.
+// Rays that skip their nearest hit or the next, another of theirs, the same primitive of another instance, or nothing.
 struct SkippingRays {
   std::vector<Ray> rays = some_rays(191);
   std::vector<SceneHit> skip;
@@ -25,7 +25,9 @@ struct SkippingRays {
     for (const Ray& ray : rays) {
       std::vector<SceneHit>& hits = left.emplace_back(all_scene_hits(scene, ray, ~0u));
       const std::size_t i = skip.size();
-      skip.push_back(hits.empty() || i % 6 == 5 ? SceneHit() : hits[i % 6 == 4 ? hits.size() - 1 : 0]);
+      const std::size_t last = std::max<std::size_t>(hits.size(), 1) - 1;
+      skip.push_back(hits.empty() || i % 6 == 5 ? SceneHit()
+                                                : hits[i % 6 == 4 ? last : std::min(i % 2, last)]);
       if (i % 6 == 3) ++skip.back().instance;
       skipped += std::erase_if(hits, [&](const SceneHit& hit) {
         return hit.instance == skip.back().instance && hit.primitive == skip.back().primitive;
