@@ -137,14 +137,14 @@ def modes_table(results):
     def cell(**case):
         return pair(regret(path, **case) for path in TWO_PATHS)
 
-    kinds, pictures = results.names('rays'), results.names('pixels')
-    scenes = list(dict.fromkeys((row['scene'], row['triangles']) for row in results.rows))
+    kinds = results.names('rays')
+    cases = dict.fromkeys((row['scene'], row['triangles'], row['pixels']) for row in results.rows)
     lines = [[f'{scene}, {triangles:,}', f'{pixels:,}',
-              *(cell(triangles=triangles, rays=kind, pixels=pixels) for kind in kinds)]
-             for scene, triangles in scenes for pixels in pictures]
+              *(cell(scene=scene, triangles=triangles, rays=kind, pixels=pixels) for kind in kinds)]
+             for scene, triangles, pixels in cases]
     lines.append(['**geometric mean**', '', *(
-        pair(mean(regret(path, triangles=triangles, rays=kind, pixels=pixels)
-                  for _, triangles in scenes for pixels in pictures) for path in TWO_PATHS) for kind in kinds)])
+        pair(mean(regret(path, scene=scene, triangles=triangles, rays=kind, pixels=pixels)
+                  for scene, triangles, pixels in cases) for path in TWO_PATHS) for kind in kinds)])
     return table(['scene, triangles', 'pixels', *(KINDS.get(kind, kind) for kind in kinds)], lines)
 
 
