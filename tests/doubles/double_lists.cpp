@@ -31,7 +31,7 @@ TEST(DoubleLists, that_outgrow_their_room) {
 }
 
 TEST(DoubleLists, cut_are_the_first_of_all) {
-  for (const DoubleCase& c : double_cases(by_level<std::size_t>(200, 1000, 2000))) {
+  for (const DoubleCase& c : double_cases(by_level<std::size_t>(200, 400, 2000))) {
     const BvhD tree(c.mesh.vertices, c.mesh.triangles);
     for (const Facing facing : {Facing::any, Facing::back}) {
       const RayLists<HitD> all = tree.all_hits(c.rays, {.facing = facing});

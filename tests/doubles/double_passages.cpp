@@ -11,7 +11,7 @@ namespace {
 
 TEST(DoublePassages, are_hits_that_cross_and_no_glances) {
   std::size_t touched = 0;
-  for (const DoubleCase& c : double_cases(by_level<std::size_t>(60, 300, 600))) {
+  for (const DoubleCase& c : double_cases(by_level<std::size_t>(60, 120, 600))) {
     const PassingRays of(c.mesh, c.rays);
     const BvhD tree(c.mesh.vertices, c.mesh.triangles);
     for (const Facing facing : {Facing::any, Facing::front, Facing::back})

@@ -54,12 +54,19 @@ const std::vector<Known>& known_cases() {
 }
 
 template <class Check>
-void on_each_case(const Check& check) {
-  for (const Path* path : paths_with_own_queries())
-    for (const Known& known : known_cases()) {
-      SCOPED_TRACE(known.with.name + " on " + path->name);
-      check(known, *path);
+void on_each_case(const Check& check, bool in_turn = false) {
+  const std::vector<const Path*> paths = paths_with_own_queries();
+  for (std::size_t p = 0; p < paths.size(); ++p)
+    for (std::size_t i = 0; i < known_cases().size(); ++i) {
+      if (in_turn && i % paths.size() != p) continue;
+      SCOPED_TRACE(known_cases()[i].with.name + " on " + paths[p]->name);
+      check(known_cases()[i], *paths[p]);
     }
+}
+// Thousands of rays: below level all each case on one path, all paths in turn.
+template <class Check>
+void on_large_cases(const Check& check) {
+  on_each_case(check, by_level(true, true, false));
 }
 
 TEST(DoubleRays, nearest_hits_are_those_of_rational_arithmetic) {
@@ -120,7 +127,7 @@ TEST(DoubleRays, skip_a_triangle_each) {
 
 // So many rays are traced as streams, if most begin in the box. Rational arithmetic has judged single calls.
 TEST(DoubleRays, large_batches_agree_with_single_calls) {
-  on_each_case([](const Known& known, const Path& path) {
+  on_large_cases([](const Known& known, const Path& path) {
     const std::vector<RayD> rays = aimed_rays(known.with.mesh, 5000, 77, 0.9);
     const TraceOptionsD options{.path = &path};
     std::vector<HitD> hits(rays.size()), of_threads(rays.size());
@@ -139,7 +146,7 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
 
 // With all triangles of both sides they go as streams or packets.
 TEST(DoubleRays, large_batches_skip_a_triangle_each_or_keep_to_a_side) {
-  on_each_case([](const Known& known, const Path& path) {
+  on_large_cases([](const Known& known, const Path& path) {
     for (const std::vector<RayD>& rays :
          {aimed_rays(known.with.mesh, 5000, 78, 0.9), aimed_rays_from_points(known.with.mesh, 400, 100, 6)}) {
       std::vector<HitD> first(rays.size()), hits(rays.size());
@@ -201,7 +208,7 @@ TEST(DoubleRays, from_a_point_without_an_end_or_a_direction_miss) {
 }
 
 TEST(DoubleRays, batches_from_points_agree_with_single_calls) {
-  on_each_case([](const Known& known, const Path& path) {
+  on_large_cases([](const Known& known, const Path& path) {
     for (const std::size_t run :
          {std::size_t{64}, std::size_t{700}, by_level<std::size_t>(2000, 17000, 40000)}) {
       const std::size_t count = run < 1000 ? 3 * run + 50 : run + 50;

@@ -78,7 +78,7 @@ void expect_exact_rows(const DoubleMesh& mesh, std::size_t count, std::uint64_t 
 }
 
 std::size_t rows(std::size_t count) {
-  return by_level<std::size_t>(count / 4, count, 2 * count);
+  return by_level<std::size_t>(count / 4, count / 2, 2 * count);
 }
 
 TEST(DoubleRows, near_zero) {

@@ -155,7 +155,7 @@ void check_mesh(std::uint64_t seed, std::size_t count, const Path& path) {
 
 // Each mesh on one path, all paths in turn; rays as streams and as single ones.
 TEST(IntegerRays, of_doubles_are_decided_as_integers_decide) {
-  const std::size_t count = quick() ? 500 : 10000;
+  const auto count = by_level<std::size_t>(500, 2500, 10000);
   const std::uint64_t meshes = quick() ? 36 : exhaustive() ? 10000 : 100;
   const std::vector<const Path*> paths = paths_with_own_queries();
   for (std::uint64_t seed = 0; seed < meshes && !HasFatalFailure(); ++seed)

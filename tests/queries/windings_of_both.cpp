@@ -102,7 +102,7 @@ TYPED_TEST(WindingsOf, triangles_that_have_nothing_in_common) {
 
 TYPED_TEST(WindingsOf, chords_of_flat_and_rough_holes) {
   Random random(401);
-  const std::size_t count = this->has_floats ? by_level(600) : by_level<std::size_t>(60, 120, 300);
+  const std::size_t count = this->has_floats ? by_level(600) : by_level<std::size_t>(60, 60, 300);
   for (const auto& [axis, roughness] : {std::pair<std::size_t, int>{2, 0}, {0, 0}, {1, 1}, {2, 3}})
     for (const Placement& place : this->places({as_it_is,
                                                 {0x1p-10, {0x1p22, -0x1p21, 0x1p20}},
@@ -125,7 +125,7 @@ TYPED_TEST(WindingsOf, points_beside_chords_at_all_distances) {
                        : std::vector{0.0,      0x1p-1074, 0x1p-1000, 0x1p-600, 0x1p-300,
                                      0x1p-100, 0x1p-52,   0x1p-26,   0x1p-13,  0x1p-3};
   std::vector<PointOf<TypeParam>> points;
-  for (std::size_t i = 0; i < (this->has_floats ? by_level(600) : by_level<std::size_t>(30, 100, 300)); ++i) {
+  for (std::size_t i = 0; i < (this->has_floats ? by_level(600) : by_level<std::size_t>(30, 50, 300)); ++i) {
     PointOf<TypeParam> point;
     for (TypeParam& x : point) {
       const double step = steps[random.index(steps.size())];

@@ -30,7 +30,7 @@ TEST_P(ClosedMeshInATree, does_not_leak_in_either_grade) {
   const Bvh bvh(mesh.vertices, mesh.triangles);
   Random random(35);
   std::vector<Ray> rays;
-  for (std::size_t i = 0; i < (quick() ? 1000u : 24000u); ++i) {
+  for (std::size_t i = 0; i < by_level(1000u, 8000u, 24000u); ++i) {
     const Index3& corners = mesh.triangles[i % mesh.triangles.size()];
     rays.push_back(ray_to(random.point(0.4f, GetParam()), triangle_of(mesh.vertices, corners),
                           random.chance(0.5) ? 0 : random.real(0, 1), 0));

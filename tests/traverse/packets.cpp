@@ -279,7 +279,7 @@ TEST(Packets, of_one_line_through_a_corner) {
   const Mesh mesh = ellipsoid(1, {10, 20, -30});
   const Bvh bvh(mesh);
   Random random(58);
-  for (int i = 0; i < (quick() ? 2 : 20); ++i) {
+  for (int i = 0; i < by_level(2, 8, 20); ++i) {
     const Float3 origin = random.point(0.5f, {10, 20, -30});
     for (const Index3& triangle : mesh.triangles) {
       const Ray ray = ray_to(origin, triangle_of(mesh.vertices, triangle), 0, 0);

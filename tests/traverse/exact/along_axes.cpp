@@ -15,7 +15,7 @@ namespace {
 
 TEST(AlongAxes, hits_of_every_mode_and_tree) {
   const Mesh mesh = terrain_over_a_floor();
-  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(240, 600, 2400), 62);
+  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(240, 360, 2400), 62);
   const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
   EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return !!hit; }),
             static_cast<std::ptrdiff_t>(rays.size() / 3));

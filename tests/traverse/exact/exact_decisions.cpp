@@ -124,7 +124,7 @@ class ExactDecisions : public ::testing::TestWithParam<ExactSet> {};
 TEST_P(ExactDecisions, are_those_of_rational_numbers) {
   Random random(2026);
   std::size_t hits = 0, ends = 0;
-  const int rounds = exhaustive() ? 24'000 : by_level(4, 60, 140);
+  const int rounds = exhaustive() ? 24'000 : by_level(4, 24, 140);
   for (int round = 0; round < rounds; ++round) {
     const ExactCase c = GetParam().make(random);
     std::vector<std::vector<Hit>> of_triangle;
