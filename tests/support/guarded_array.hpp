@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <map>
+#include <memory>
 #include <new>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "system/guard_pages.hpp"
 
@@ -16,6 +19,36 @@ namespace raylanes::testing {
 // may not be touched, and the rest between holds canaries. Flush with the end, reading or writing one byte
 // behind the last element is a fault. One element behind the front guard, the array is aligned to no vector.
 enum class Place { unguarded, before_guard, after_guard };
+
+// Whole pages between two that may not be touched. A thread keeps them for its next ones of this size: the system takes
+// longer to give them than a kernel to use them.
+class PagesBetweenGuards {
+ public:
+  explicit PagesBetweenGuards(std::size_t bytes) : kept_(kept_of(bytes)) {
+    if (!kept_.empty()) {
+      pages_ = std::move(kept_.back()), kept_.pop_back();
+      return;
+    }
+    const std::size_t page = page_size();
+    pages_ = std::make_unique<Pages>(bytes + 2 * page);
+    pages_->forbid(0, page), pages_->forbid(page + bytes, page);
+  }
+  ~PagesBetweenGuards() { kept_.push_back(std::move(pages_)); }
+  PagesBetweenGuards(const PagesBetweenGuards&) = delete;
+  PagesBetweenGuards& operator=(const PagesBetweenGuards&) = delete;
+
+  unsigned char* data() const { return pages_->data() + page_size(); }
+
+ private:
+  using Kept = std::vector<std::unique_ptr<Pages>>;
+  static Kept& kept_of(std::size_t bytes) {
+    thread_local std::map<std::size_t, Kept> kept;
+    return kept[bytes];
+  }
+
+  Kept& kept_;
+  std::unique_ptr<Pages> pages_;
+};
 
 // `size` elements of T, at first canaries. T is trivially copyable.
 template <class T>
@@ -29,10 +62,7 @@ class GuardedArray {
     } else {
       const std::size_t page = page_size();
       inner_bytes_ = ((bytes + sizeof(T)) / page + 1) * page;
-      pages_.emplace(inner_bytes_ + 2 * page);
-      pages_->forbid(0, page);
-      pages_->forbid(page + inner_bytes_, page);
-      inner_ = pages_->data() + page;
+      inner_ = pages_.emplace(inner_bytes_).data();
     }
     std::memset(inner_, canary, inner_bytes_);
     first_ = place == Place::unguarded ? heap_margin
@@ -69,7 +99,7 @@ class GuardedArray {
   }
 
   std::size_t size_, inner_bytes_ = 0, first_ = 0;
-  std::optional<Pages> pages_;  // none: on the heap
+  std::optional<PagesBetweenGuards> pages_;  // none: on the heap
   unsigned char* inner_ = nullptr;
 };
 
