@@ -7,6 +7,7 @@ package_what_is_built() {
     printf '\noverride_dh_auto_build:\n\tcp -a %s %s/\n\tcp -a %s %s/python/raylanes/\n' \
         "$build/libraylanes.a $build/libraylanes.so.*[0-9]" "$folder" "$build/python/raylanes/*" "$folder"
     printf '\noverride_dh_auto_install:\n\tmeson install -C %s --no-rebuild --destdir $(CURDIR)/debian/tmp\n' "$folder"
+    printf '\noverride_dh_builddeb:\n\tdh_builddeb -- -z1\n'  # packed in a fifth of the time
 }
 
 # Makes packages as Debian's tools do. The argument is `built` for the library of BUILD_FOLDER, whose tests are not run
