@@ -93,7 +93,7 @@ def interrupted(script, *arguments, after=0.15):
 def test_interrupts_end_queries(kind, dtype):
     """Within 0.2 s. A busy machine only adds to that: so the bound is that of the median of all calls, and where they
     miss it, of the better of two runs. No call takes a second, as most parts of a call without reports would."""
-    expect_soon(lambda: interrupted(ask_again_and_again, kind, dtype), 22)
+    expect_soon(lambda: interrupted(ask_again_and_again, kind, dtype, after=0.08), 22)
 
 
 def expect_soon(run, calls):
