@@ -203,11 +203,9 @@ void expect_untouched(const Probe& probe, std::size_t lanes, bool by_mask, Bits<
   const bool loads = probe.arity == 3;
   for (const Place place : {Place::before_guard, Place::after_guard}) {
     // The first or the last lane that takes part lies beside the page that may not be touched.
-    static std::map<std::pair<std::size_t, Place>, std::unique_ptr<GuardedArray<Bits<T>>>> arrays;
-    auto& array = arrays[{lanes, place}];
-    if (array == nullptr) array = std::make_unique<GuardedArray<Bits<T>>>(lanes, place);
-    for (std::size_t i = 0; i < lanes; ++i) (*array)[i] = 50;
-    Bits<T>* const data = array->data() + (place == Place::before_guard ? lanes - end : std::size_t{0});
+    GuardedArray<Bits<T>> array(lanes, place);
+    for (std::size_t i = 0; i < lanes; ++i) array[i] = 50;
+    Bits<T>* const data = array.data() + (place == Place::before_guard ? lanes - end : std::size_t{0});
     Bits<T>* const p = place == Place::before_guard ? data : data - least;
     std::vector<Bits<T>> found(lanes);
     if (loads) {
@@ -223,12 +221,12 @@ void expect_untouched(const Probe& probe, std::size_t lanes, bool by_mask, Bits<
     std::size_t changed = 0;
     for (std::size_t i = 0; i < lanes; ++i) {
       ASSERT_EQ(found[i], takes_part(i) ? values[i] : 7u) << "lane " << i << " of word " << word;
-      changed += (*array)[i] == 50 ? 0u : 1u;
+      changed += array[i] == 50 ? 0u : 1u;
     }
     std::size_t taking_part = 0;
     for (std::size_t i = 0; i < lanes; ++i) taking_part += takes_part(i) ? 1u : 0u;
     ASSERT_EQ(changed, taking_part) << "word " << word;
-    ASSERT_TRUE(array->is_intact()) << "word " << word;
+    ASSERT_TRUE(array.is_intact()) << "word " << word;
   }
 }
 

@@ -20,20 +20,20 @@ namespace raylanes::testing {
 // behind the last element is a fault. One element behind the front guard, the array is aligned to no vector.
 enum class Place { unguarded, before_guard, after_guard };
 
-// Whole pages between two that may not be touched. A thread keeps them for its next ones of this size: the system takes
-// longer to give them than a kernel to use them.
+// Whole pages between two that may not be touched, of no object with static lifetime. A thread keeps them for its next
+// ones of this size: the system takes longer to give them than a kernel to use them.
 class PagesBetweenGuards {
  public:
-  explicit PagesBetweenGuards(std::size_t bytes) : kept_(kept_of(bytes)) {
-    if (!kept_.empty()) {
-      pages_ = std::move(kept_.back()), kept_.pop_back();
+  explicit PagesBetweenGuards(std::size_t bytes) : bytes_(bytes) {
+    if (Kept& kept = kept_of(bytes); !kept.empty()) {
+      pages_ = std::move(kept.back()), kept.pop_back();
       return;
     }
     const std::size_t page = page_size();
     pages_ = std::make_unique<Pages>(bytes + 2 * page);
     pages_->forbid(0, page), pages_->forbid(page + bytes, page);
   }
-  ~PagesBetweenGuards() { kept_.push_back(std::move(pages_)); }
+  ~PagesBetweenGuards() { kept_of(bytes_).push_back(std::move(pages_)); }
   PagesBetweenGuards(const PagesBetweenGuards&) = delete;
   PagesBetweenGuards& operator=(const PagesBetweenGuards&) = delete;
 
@@ -46,7 +46,7 @@ class PagesBetweenGuards {
     return kept[bytes];
   }
 
-  Kept& kept_;
+  std::size_t bytes_;
   std::unique_ptr<Pages> pages_;
 };
 
