@@ -47,7 +47,7 @@ use_by_installs() {
         { echo "SKIPPED: no python3-mesonpy, python3-venv, python3-wheel or patchelf: no install" && exit 77; }
     mkdir "$work/source"
     tar -C "$source" -cf - --exclude='./build*' --exclude=./.git . | tar -C "$work/source" -xf -
-    sed -i 's/"-Dwheel=true"/"-Dwheel=true", "-Dpaths=[]"/' "$work/source/pyproject.toml"
+    sed -i 's/"-Dpaths=[^"]*"/"-Dpaths=[]"/' "$work/source/pyproject.toml"
     grep -q '"-Dpaths=\[\]"' "$work/source/pyproject.toml" || fail "pyproject.toml has no place for paths"
     make_index "$work/index"
     # Commands that Debian's Python runs, whatever comes first in PATH.
