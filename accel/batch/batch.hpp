@@ -56,12 +56,6 @@ void over_parts(const BatchPlan& plan, std::size_t n, const Work& work) {
     in_parallel(n, grain, plan.threads, counted);
 }
 
-template <class Source>
-bool takes_all([[maybe_unused]] const Source& source) {
-  if constexpr (requires { source.takes_all(); }) return source.takes_all();
-  return false;
-}
-
 // The active rays among some of a source at a time, as kernels read them, their indices in it, and what they skip.
 template <class Source>
 class ActiveRays {
@@ -117,7 +111,7 @@ class ActiveRays {
   std::size_t copy(std::size_t begin, std::size_t count) const {
     std::size_t n = 0;
     const auto copy_all = [&](const auto& put) {
-      if (takes_all(source_))
+      if (source_.takes_all())
         for (; n < count; ++n) put(begin + n, copies_[n]);
       else
         for (std::size_t i = begin; i < begin + count; ++i)
@@ -183,7 +177,7 @@ template <class Source, class Sink, class ScratchBytes, class Work>
 void over_calls(const BatchPlan& plan, const Source& rays, const Sink& sink,
                 const ScratchBytes& scratch_bytes, const Work& work) {
   using Answer = typename Sink::Answer;
-  Answer* const out = takes_all(rays) ? sink.in_place() : nullptr;
+  Answer* const out = rays.takes_all() ? sink.in_place() : nullptr;
   over_parts(plan, rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {
     const std::size_t most = std::min(plan.max_call, end - begin), own_bytes = scratch_bytes(most);
     Scratch scratch(ActiveRays<Source>::bytes(rays, most) + Scratch::bytes_of<std::byte>(own_bytes) +

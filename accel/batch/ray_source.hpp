@@ -21,7 +21,7 @@ struct SegmentsOf {
   VertexRecords<T> points;
   SegmentEndsOf<T> ends;
 
-  RayOf<T> ray(std::size_t i) const {
+  RayOf<T> operator[](std::size_t i) const {
     RayOf<T> ray;
     put(i, ray);
     return ray;
@@ -68,7 +68,7 @@ struct RaySourceOf {
   bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
   bool takes_all() const { return active == nullptr; }
   Ray operator[](std::size_t i) const {
-    if (segments != nullptr) return segments->ray(i);
+    if (segments != nullptr) return (*segments)[i];
     if (arrays == nullptr) return records[i];
     return {{arrays->origin[0][i], arrays->origin[1][i], arrays->origin[2][i]},
             arrays->tmin[i],

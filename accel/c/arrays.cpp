@@ -49,18 +49,35 @@ raylanes_status raylanes_force_path(const char* name) {
   });
 }
 
-#define RAYLANES_ROOT(name, function, Number)                                                     \
-  raylanes_status name(const Number* x, Number* y, std::size_t count, std::int32_t accuracy,      \
-                       const char* path) {                                                        \
-    return roots(x, y, count, accuracy, path, [](auto... arguments) { function(arguments...); }); \
-  }
-RAYLANES_ROOT(raylanes_sqrt, sqrt, float)
-RAYLANES_ROOT(raylanes_sqrtd, sqrt, double)
-RAYLANES_ROOT(raylanes_rsqrt, rsqrt, float)
-RAYLANES_ROOT(raylanes_rsqrtd, rsqrt, double)
-RAYLANES_ROOT(raylanes_reciprocal, reciprocal, float)
-RAYLANES_ROOT(raylanes_reciprocald, reciprocal, double)
-#undef RAYLANES_ROOT
+raylanes_status raylanes_sqrt(const float* x, float* y, std::size_t count, std::int32_t accuracy,
+                              const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { sqrt(arguments...); });
+}
+
+raylanes_status raylanes_sqrtd(const double* x, double* y, std::size_t count, std::int32_t accuracy,
+                               const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { sqrt(arguments...); });
+}
+
+raylanes_status raylanes_rsqrt(const float* x, float* y, std::size_t count, std::int32_t accuracy,
+                               const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { rsqrt(arguments...); });
+}
+
+raylanes_status raylanes_rsqrtd(const double* x, double* y, std::size_t count, std::int32_t accuracy,
+                                const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { rsqrt(arguments...); });
+}
+
+raylanes_status raylanes_reciprocal(const float* x, float* y, std::size_t count, std::int32_t accuracy,
+                                    const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { reciprocal(arguments...); });
+}
+
+raylanes_status raylanes_reciprocald(const double* x, double* y, std::size_t count, std::int32_t accuracy,
+                                     const char* path) {
+  return roots(x, y, count, accuracy, path, [](auto... arguments) { reciprocal(arguments...); });
+}
 
 }  // extern "C"
 }  // namespace raylanes::c

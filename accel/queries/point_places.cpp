@@ -107,6 +107,7 @@ struct RaysOfPoints : Points<T> {
   std::span<const std::size_t> indices;
 
   bool takes_part(std::size_t) const { return true; }
+  bool takes_all() const { return true; }
   RayOf<T> operator[](std::size_t i) const {
     return {this->view[indices[i]], 0, directions_to_sides<T>[places[indices[i] - begin].side]};
   }
@@ -122,6 +123,7 @@ struct RaysOfLines : Points<T> {
   std::span<const PointsInLine> lines;
 
   bool takes_part(std::size_t) const { return true; }
+  bool takes_all() const { return true; }
   RayOf<T> operator[](std::size_t i) const { return rays.through(this->view[lines[i].begin], lines[i].axis); }
 };
 

@@ -44,6 +44,7 @@ struct Points {
 
   const Ray* in_place() const { return nullptr; }
   bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
+  bool takes_all() const { return active == nullptr; }
   // The first active point from i on; view.count if there is none.
   std::size_t active_from(std::size_t i) const {
     while (i < view.count && !takes_part(i)) ++i;

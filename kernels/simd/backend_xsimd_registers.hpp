@@ -34,21 +34,28 @@ inline std::uint32_t register_bits(__mmask8 m) {
 }
 #endif
 
-#define RAYLANES_FUSED(Register, instruction)                          \
-  inline Register register_fused(Register a, Register b, Register c) { \
-    return instruction(a, b, c);                                       \
-  }
 #if defined(__FMA__)
-RAYLANES_FUSED(__m128, _mm_fmadd_ps)
-RAYLANES_FUSED(__m128d, _mm_fmadd_pd)
-RAYLANES_FUSED(__m256, _mm256_fmadd_ps)
-RAYLANES_FUSED(__m256d, _mm256_fmadd_pd)
+inline __m128 register_fused(__m128 a, __m128 b, __m128 c) {
+  return _mm_fmadd_ps(a, b, c);
+}
+inline __m128d register_fused(__m128d a, __m128d b, __m128d c) {
+  return _mm_fmadd_pd(a, b, c);
+}
+inline __m256 register_fused(__m256 a, __m256 b, __m256 c) {
+  return _mm256_fmadd_ps(a, b, c);
+}
+inline __m256d register_fused(__m256d a, __m256d b, __m256d c) {
+  return _mm256_fmadd_pd(a, b, c);
+}
 #endif
 #if defined(__AVX512F__)
-RAYLANES_FUSED(__m512, _mm512_fmadd_ps)
-RAYLANES_FUSED(__m512d, _mm512_fmadd_pd)
+inline __m512 register_fused(__m512 a, __m512 b, __m512 c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
+inline __m512d register_fused(__m512d a, __m512d b, __m512d c) {
+  return _mm512_fmadd_pd(a, b, c);
+}
 #endif
-#undef RAYLANES_FUSED
 
 // a where the sign bit of s is set, else b.
 #if defined(__AVX512F__)
@@ -135,50 +142,77 @@ inline void masked_store(T* p, Register m, Register a) {
 // A window on these is a mask of the first lanes.
 inline constexpr std::uint32_t ones_then_zeros[16] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
 
-#define RAYLANES_ONE_TO_ONE(name, Register, instruction) \
-  inline Register name(Register a) {                     \
-    return instruction(a);                               \
-  }
 // Estimates of 1/sqrt(a) and 1/a. AVX-512 has its own estimates, of 14 bits, in
 // all widths; doubles without it go through float.
 #if defined(__AVX512F__)
 inline constexpr bool estimates_flush_subnormals = false;
 inline constexpr bool estimates_span_doubles = true;
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m128, _mm_rsqrt14_ps)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m256, _mm256_rsqrt14_ps)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m512, _mm512_rsqrt14_ps)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m128d, _mm_rsqrt14_pd)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m256d, _mm256_rsqrt14_pd)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m512d, _mm512_rsqrt14_pd)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m128, _mm_rcp14_ps)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m256, _mm256_rcp14_ps)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m512, _mm512_rcp14_ps)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m128d, _mm_rcp14_pd)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m256d, _mm256_rcp14_pd)
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m512d, _mm512_rcp14_pd)
+inline __m128 register_rsqrt(__m128 a) {
+  return _mm_rsqrt14_ps(a);
+}
+inline __m256 register_rsqrt(__m256 a) {
+  return _mm256_rsqrt14_ps(a);
+}
+inline __m512 register_rsqrt(__m512 a) {
+  return _mm512_rsqrt14_ps(a);
+}
+inline __m128d register_rsqrt(__m128d a) {
+  return _mm_rsqrt14_pd(a);
+}
+inline __m256d register_rsqrt(__m256d a) {
+  return _mm256_rsqrt14_pd(a);
+}
+inline __m512d register_rsqrt(__m512d a) {
+  return _mm512_rsqrt14_pd(a);
+}
+inline __m128 register_reciprocal(__m128 a) {
+  return _mm_rcp14_ps(a);
+}
+inline __m256 register_reciprocal(__m256 a) {
+  return _mm256_rcp14_ps(a);
+}
+inline __m512 register_reciprocal(__m512 a) {
+  return _mm512_rcp14_ps(a);
+}
+inline __m128d register_reciprocal(__m128d a) {
+  return _mm_rcp14_pd(a);
+}
+inline __m256d register_reciprocal(__m256d a) {
+  return _mm256_rcp14_pd(a);
+}
+inline __m512d register_reciprocal(__m512d a) {
+  return _mm512_rcp14_pd(a);
+}
 #else
 inline constexpr bool estimates_flush_subnormals = true;
 inline constexpr bool estimates_span_doubles = false;
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m128, _mm_rsqrt_ps)
+inline __m128 register_rsqrt(__m128 a) {
+  return _mm_rsqrt_ps(a);
+}
 inline __m128d register_rsqrt(__m128d a) {
   return _mm_cvtps_pd(_mm_rsqrt_ps(_mm_cvtpd_ps(a)));
 }
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m128, _mm_rcp_ps)
+inline __m128 register_reciprocal(__m128 a) {
+  return _mm_rcp_ps(a);
+}
 inline __m128d register_reciprocal(__m128d a) {
   return _mm_cvtps_pd(_mm_rcp_ps(_mm_cvtpd_ps(a)));
 }
 #if defined(__AVX__)
-RAYLANES_ONE_TO_ONE(register_rsqrt, __m256, _mm256_rsqrt_ps)
+inline __m256 register_rsqrt(__m256 a) {
+  return _mm256_rsqrt_ps(a);
+}
 inline __m256d register_rsqrt(__m256d a) {
   return _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(a)));
 }
-RAYLANES_ONE_TO_ONE(register_reciprocal, __m256, _mm256_rcp_ps)
+inline __m256 register_reciprocal(__m256 a) {
+  return _mm256_rcp_ps(a);
+}
 inline __m256d register_reciprocal(__m256d a) {
   return _mm256_cvtps_pd(_mm_rcp_ps(_mm256_cvtpd_ps(a)));
 }
 #endif
 #endif
-#undef RAYLANES_ONE_TO_ONE
 
 // The lower (0) or upper (1) half of floats as doubles, and both halves back.
 template <int half>

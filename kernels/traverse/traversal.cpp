@@ -67,10 +67,5 @@ constexpr TraversalKernels all_kernels() {
 
 }  // namespace
 
-namespace detail::RAYLANES_PATH_NAME {
-
-extern constinit const TraversalKernels RAYLANES_TABLE;
-constinit const TraversalKernels RAYLANES_TABLE = all_kernels<RAYLANES_COUNTS>();
-
-}  // namespace detail::RAYLANES_PATH_NAME
+RAYLANES_UNIT_TABLE(TraversalKernels, RAYLANES_TABLE, all_kernels<RAYLANES_COUNTS>())
 }  // namespace raylanes

@@ -96,8 +96,8 @@ def roots_chart(results):
 
 
 def ratios_by_size(sizes, lines, labels, place, title):
-    """A chart of ratios, from zero on with a line at one, against sizes that grow by factors; lines are (words of its
-    comment, label, ratios), labels those of the axes."""
+    """A chart of ratios, from zero on with a line at one, against sizes that grow by factors. Lines are (words of its
+    comment, label, ratios); labels name the two axes."""
     figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
     shown = []
     for (colour, marker), (words, label, ratios) in zip(plot_style.SERIES, lines):
