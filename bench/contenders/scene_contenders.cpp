@@ -13,21 +13,56 @@ Ray turned(Ray ray) {
   return ray;
 }
 
-// Into hits of a scene, which become the tree's after the clock has stopped.
-double trace(const raylanes::Scene& scene, std::span<const Ray> rays, bool calls, const TraceOptions& options,
-             std::vector<SceneHit>& hits, Answers& answers) {
-  hits.resize(rays.size());
-  const double seconds = seconds_of([&] {
-    if (calls)
-      for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = scene.closest(rays[i], options);
-    else
-      scene.closest(rays, hits, options);
-  });
-  std::ranges::transform(hits, answers.hits.begin(), [](const SceneHit& hit) {
-    return Hit{hit.t, hit.u, hit.v, hit.primitive};
-  });
-  return seconds;
+// One call for each ray: without options if these are the defaults of the active path.
+template <class Each>
+void call_each(const TraceOptions& options, const Each& each) {
+  if (options.path == &active_path())
+    each();
+  else
+    each(options);
 }
+
+// Traces into hits of a scene, and renumbers them by the whole mesh after the clock has stopped.
+class SceneTracer {
+ public:
+  SceneTracer(const raylanes::Scene& scene, const std::vector<std::uint32_t>& first, bool calls,
+              const Path& path)
+      : scene_(scene), first_(first), calls_(calls), options_{.path = &path} {}
+
+  double operator()(const RaySet& set, Answers& answers) {
+    return set.query == Query::closest ? closest(set.rays, answers.hits) : any(set.rays, answers.occluded);
+  }
+
+ private:
+  double closest(std::span<const Ray> rays, std::span<Hit> out) {
+    hits_.resize(rays.size());
+    const double seconds = seconds_of([&] {
+      if (!calls_) return scene_.closest(rays, hits_, options_);
+      call_each(options_, [&](const auto&... options) {
+        for (std::size_t i = 0; i < rays.size(); ++i) hits_[i] = scene_.closest(rays[i], options...);
+      });
+    });
+    std::ranges::transform(hits_, out.begin(), [&](const SceneHit& hit) {
+      return Hit{hit.t, hit.u, hit.v, hit ? first_[hit.instance] + hit.primitive : no_primitive};
+    });
+    return seconds;
+  }
+  double any(std::span<const Ray> rays, std::span<std::uint8_t> occluded) const {
+    return seconds_of([&] {
+      if (!calls_) return scene_.occluded(rays, occluded, options_);
+      call_each(options_, [&](const auto&... options) {
+        for (std::size_t i = 0; i < rays.size(); ++i)
+          occluded[i] = scene_.occluded(rays[i], options...) ? 1 : 0;
+      });
+    });
+  }
+
+  const raylanes::Scene& scene_;
+  const std::vector<std::uint32_t>& first_;
+  bool calls_;
+  TraceOptions options_;
+  std::vector<SceneHit> hits_;
+};
 
 Contender timed_contender(const char* mode, std::function<double(const RaySet&, Answers&)> timed) {
   return {mode, timed, timed};
@@ -35,29 +70,46 @@ Contender timed_contender(const char* mode, std::function<double(const RaySet&, 
 
 }  // namespace
 
-SceneContenders::SceneContenders(const Mesh& mesh, const Bvh& bvh) : bvh_(bvh), user_(mesh) {
-  scene_.place(scene_.add(Bvh(mesh)));
-  turned_.place(turned_.add(Bvh(mesh)), quarter_turn);
-  scene_.update(), turned_.update();
+SceneContenders::SceneContenders(const Parts& parts) : first_(parts.first) {
+  for (const Mesh& part : parts.meshes) {
+    const auto tree = std::make_shared<const Bvh>(part);
+    scene_.place(scene_.add(tree)), other_.place(other_.add(tree));
+  }
+  for (std::uint32_t i = 0; i < first_.size(); ++i)
+    other_.move(i, first_.size() == 1 ? quarter_turn : Transform{});
+  scene_.update(), other_.update();
 }
 
-std::vector<NamedContender> SceneContenders::scenes(const Path& path, bool calls) const {
+std::vector<NamedContender> SceneContenders::ways(const Path& path, bool calls) const {
   const char* const mode = calls ? "call" : "automatic";
-  const TraceOptions options{.path = &path};
-  const auto hits = std::make_shared<std::vector<SceneHit>>();
-  const auto straight = [=, this](const RaySet& set, Answers& answers) {
-    return trace(scene_, set.rays, calls, options, *hits, answers);
+  const auto straight = std::make_shared<SceneTracer>(scene_, first_, calls, path);
+  const auto other = std::make_shared<SceneTracer>(other_, first_, calls, path);
+  const auto around = [other](const RaySet& set, Answers& answers) {
+    RaySet moved{set.name, set.query, set.rays};
+    for (Ray& ray : moved.rays) ray = turned(ray);
+    return (*other)(moved, answers);
   };
-  const auto around = [=, this](const RaySet& set, Answers& answers) {
-    std::vector<Ray> rays(set.rays.size());
-    std::ranges::transform(set.rays, rays.begin(), turned);
-    return trace(turned_, rays, calls, options, *hits, answers);
+  const auto by = [](const auto& tracer) {
+    return [tracer](const RaySet& set, Answers& answers) { return (*tracer)(set, answers); };
   };
-  return {{"scene", timed_contender(mode, straight), true},
-          {"scene_turned", timed_contender(mode, around), true}};
+  const bool is_one = first_.size() == 1;
+  return {{"scene", timed_contender(mode, by(straight)), true},
+          {is_one ? "scene_turned" : "scene_moving",
+           is_one ? timed_contender(mode, around) : timed_contender(mode, by(other)), true}};
 }
 
-std::vector<NamedContender> SceneContenders::user(const Path& path) const {
+std::pair<double, double> SceneContenders::seconds_of_a_move() const {
+  raylanes::Scene scene = scene_;
+  const auto move = [&](float by) {
+    scene.move(static_cast<std::uint32_t>(scene.instance_count() - 1),
+               {{{1, 0, 0, by}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
+    return seconds_of([&] { scene.update(); });
+  };
+  const double first = move(1);
+  return {first, move(0)};
+}
+
+std::vector<NamedContender> UserContenders::ways(const Path& path) const {
   const VisitOptions visit{.path = &path};
   const auto by_leaves = [=, this](const RaySet& set, Answers& answers) {
     user_.closest_by_leaves(set.rays, answers.hits, visit);

@@ -3,12 +3,14 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/scene.hpp>
 
+#include "../support/scenes/parts.hpp"
 #include "contenders.hpp"
 
 namespace raylanes::bench {
@@ -44,22 +46,36 @@ struct NamedContender {
 // Whether another primitive for so many rays of a million is within the rounding of a test in floats.
 constexpr double max_others_per_million = 1e4;
 
-// The tree as the only instance of a scene: untransformed, and turned by a quarter with rays turned by the same, so
-// that they are exactly the same in the tree's space. Also triangles in a tree of boxes, tested by the user's own code.
+// A scene of parts: each part as one instance where it stands, `scene`, and the same parts as instances that moved,
+// `scene_moving`. If there is one part, the second scene is turned by a quarter, with rays turned by the same, so that
+// they are exactly the same in the tree's space: `scene_turned`.
 class SceneContenders {
  public:
-  // The tree and the mesh must outlive it.
-  SceneContenders(const Mesh& mesh, const Bvh& bvh);
+  explicit SceneContenders(const Parts& parts);
 
-  // Contenders for nearest hits: whole batches, or a call for each ray.
-  std::vector<NamedContender> scenes(const Path& path, bool calls) const;
+  // Whole batches, or a call for each ray. Hits are numbered as the triangles of the whole mesh.
+  std::vector<NamedContender> ways(const Path& path, bool calls) const;
+  // The seconds of update() after the last part was moved, and the same again: the first time it may leave a tree that
+  // parts have in common.
+  std::pair<double, double> seconds_of_a_move() const;
+
+ private:
+  std::vector<std::uint32_t> first_;  // of each part's triangles
+  raylanes::Scene scene_, other_;
+};
+
+// Triangles in a tree of boxes, tested by the user's own code.
+class UserContenders {
+ public:
+  // The tree and the mesh must outlive it.
+  UserContenders(const Mesh& mesh, const Bvh& bvh) : bvh_(bvh), user_(mesh) {}
+
   // Batches: a leaf at a time, a ray at a time; and visits that test nothing, whose answers are the tree's.
-  std::vector<NamedContender> user(const Path& path) const;
+  std::vector<NamedContender> ways(const Path& path) const;
 
  private:
   const Bvh& bvh_;
   const UserTriangles user_;
-  raylanes::Scene scene_, turned_;
 };
 
 }  // namespace raylanes::bench

@@ -63,9 +63,21 @@ def print_traces(rows):
         print(printable(note))
 
 
+def print_parts(rows):
+    """Scenes of many parts, by calls with one ray and by batches."""
+    rows = [row for row in rows if row['contender'] == 'scene']
+    print(f"\n{rows[0]['scene']} as a scene of {rows[0]['parts']} parts, beside one tree of all and Embree's scene of "
+          "as many geometries")
+    print_table([['rays', 'mode', 'Mrays/s', '× one tree', '× Embree (half of the rounds)', "Embree's best mode"],
+                 *([row['rays'], row['mode'], f"{row['mrays_per_second']:.3g}", f"{row['ratio_to_tree']:.2f}",
+                    ratio_of(row), row.get('ratio_to', '')] for row in rows)])
+
+
 def summary(folder):
     (paths, _), (roots, _), (traces, machine) = (rows_of(folder / f'{name}.json') for name in ('isa', 'roots', 'trace'))
     print(printable(f"{machine['processor']}, {machine['cores']} cores, {machine['compiler']}, {machine['date']}"))
     print_paths(paths)
     print_roots(roots)
     print_traces(traces)
+    if (folder / 'parts.json').is_file():
+        print_parts(rows_of(folder / 'parts.json')[0])

@@ -71,6 +71,12 @@ TEST_F(MeshReader, obj_rounds_to_the_nearest_float_and_knows_the_syntax) {
   EXPECT_EQ(mesh.vertices[4], (Float3{0, 0, 1}));
 }
 
+TEST_F(MeshReader, obj_has_groups_and_objects) {
+  const std::string faces = "f 1 2 3\n",
+                    text = obj_triangle + faces + "g a b\n" + faces + faces + "o c\ng d\n" + faces;
+  EXPECT_EQ(read_mesh(folder_.write("a.obj", text)).groups, (std::vector<std::uint32_t>{1, 3, 3}));
+}
+
 TEST_F(MeshReader, ply_polygons_other_elements_and_doubles) {
   const Mesh mesh =
       read("a.ply",

@@ -16,6 +16,7 @@
 #include "../../tests/support/message_of.hpp"
 #include "../support/pictures/heatmap.hpp"
 #include "../support/pictures/image.hpp"
+#include "../support/scenes/parts.hpp"
 #include "../support/scenes/procedural.hpp"
 #include "../support/scenes/shapes.hpp"
 #include "../support/scenes/subdivision.hpp"
@@ -58,6 +59,28 @@ TEST(Subdivide, closed_meshes_stay_closed_and_large_numbers_finite) {
   Mesh large{{{0, 0, 0}}, std::vector<Index3>((1u << 18) + 1)};
   EXPECT_EQ(message_of([&] { subdivide(large, 5); }),
             "--subdivide 5: 262145 triangles would become more than 2^28");
+}
+
+// Two strips, whose triangles take turns, and a triangle that touches none of their corners. One strip has a vertex for
+// each corner, one shares them.
+TEST(Parts, are_connected_pieces_in_the_order_of_their_first_triangles) {
+  const auto at = [](float x, float y) { return Float3{x, y, 0}; };
+  Mesh mesh{{at(0, 0), at(1, 0), at(0, 1), at(5, 0), at(6, 0), at(5, 1), at(1, 0), at(1, 1), at(0, 1),
+             at(6, 1), at(9, 9), at(9, 8), at(8, 9)},
+            {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {4, 9, 5}, {10, 11, 12}}};
+  const std::vector<Index3> sorted{{0, 1, 2}, {6, 7, 8}, {3, 4, 5}, {4, 9, 5}, {10, 11, 12}};
+  const Parts parts = cut_into_parts(mesh, 100);
+  EXPECT_EQ(mesh.triangles, sorted);
+  EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 2, 4}));
+  for (std::size_t i = 0; i < parts.meshes.size(); ++i)
+    for (std::size_t k = 0; k < parts.meshes[i].triangles.size(); ++k)
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        EXPECT_EQ(parts.meshes[i].vertices[parts.meshes[i].triangles[k][corner]],
+                  mesh.vertices[mesh.triangles[parts.first[i] + k][corner]]);
+  EXPECT_EQ(parts.meshes[1].vertices.size(), 4u);
+  EXPECT_EQ(cut_into_parts(mesh, 2).first, (std::vector<std::uint32_t>{0, 4}));
+  EXPECT_EQ(cut_into_parts(mesh, 1).first, (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(parts_of_groups(mesh, {1, 1, 4, 5}).first, (std::vector<std::uint32_t>{0, 1, 4}));
 }
 
 TEST(LoadScene, camera_comes_from_the_list_beside_the_file) {

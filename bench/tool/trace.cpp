@@ -39,6 +39,7 @@ struct TraceCommandOptions : SharedOptions {
   std::vector<std::string> modes;
   bool doubles = false;
   double offset = 0;
+  std::string parts = "1";
 };
 
 // The builder of --build is one of the trees that --tree names.
@@ -58,6 +59,15 @@ void choose_builder(SceneTraceOptions& trace, const std::string& build) {
     choose(trace.kd_builder, kd_builder_names);
 }
 
+void choose_parts(SceneTraceOptions& trace, const std::string& parts) {
+  constexpr Limits<std::size_t> limits{1, 1000000};
+  trace.by_groups = parts == "groups";
+  if (trace.by_groups) return;
+  const std::optional<std::size_t> count = number_in(parts, limits);
+  if (!count) refuse_number("--parts", parts, "`groups` or an integer", limits);
+  trace.parts = *count;
+}
+
 SceneTraceOptions parse(const TraceCommandOptions& options) {
   SceneTraceOptions parsed = options.trace;
   parsed.paths = options.paths(), parsed.ray_sets = options.rays;
@@ -70,6 +80,7 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
     else
       parsed.modes.push_back(enumerator<TraversalMode>(traversal_mode_names, mode));
   choose_builder(parsed, options.build);
+  choose_parts(parsed, options.parts);
   parsed.counts = options.counters, parsed.counts_pixels = !options.heatmap.empty();
   std::tie(parsed.width, parsed.height) = options.resolution();
   if (const long side = std::lround(std::sqrt(parsed.samples)); side * side != parsed.samples)
@@ -85,7 +96,7 @@ SceneTraceOptions parse(const TraceCommandOptions& options) {
 
 // Tables show the fastest of Embree's modes for each tree; CSV and JSON have all of them.
 bool is_shown(const TraceRow& row, const std::vector<TraceRow>& rows) {
-  if (row.contender != "embree") return true;
+  if (!row.contender.starts_with("embree")) return true;
   return std::none_of(rows.begin(), rows.end(), [&](const TraceRow& other) {
     return other.contender == row.contender && other.rays == row.rays && other.isa == row.isa &&
            other.build == row.build && other.batch == row.batch &&
@@ -136,8 +147,9 @@ void add(RowTable& table, const SceneTraceOptions& options, const TraceRow& row)
       .add_median("× packed", "ratio_to_packed", row.ratio_to_packed)
       .add("rounds", "rounds", row.rounds_mrays_per_second.size())
       .add("", "query", row.query == Query::closest ? "closest" : "any")
-      .add("", "tree", row.contender != "embree" && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh");
-  if (row.ratio || row.contender == "embree") table.keys()["embree_note"] = embree_note();
+      .add("", "tree",
+           !row.contender.starts_with("embree") && options.tree == TreeFamily::kdtree ? "kdtree" : "bvh");
+  if (row.ratio || row.contender.starts_with("embree")) table.keys()["embree_note"] = embree_note();
   if (row.counted) add_counts(table.keys(), *row.counted);
 }
 
@@ -145,6 +157,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const SceneTrace& tr
   for (const TraceRow& row : traced.rows) {
     table.begin({{"scene", traced.scene.name},
                  {"triangles", traced.scene.mesh.triangles.size()},
+                 {"parts", traced.parts},
                  {"ray_count", row.ray_count},
                  {"pixels", std::uint64_t{options.width} * options.height},
                  {"samples", options.samples},
@@ -291,6 +304,8 @@ void run(const TraceCommandOptions& options) {
   const SceneTraceOptions parsed = parse(options);
   if (options.is_against("cgal") && options.queries.empty() && !options.doubles)
     throw std::invalid_argument("--against cgal: what is compared is --query all and --doubles");
+  if (options.parts != "1" && (options.doubles || !options.queries.empty()))
+    throw std::invalid_argument("--parts: of nearest hits and of any, in floats");
   if (options.offset != 0 && !options.doubles) throw std::invalid_argument("--offset: needs --doubles");
   if (options.doubles && (!options.queries.empty() || options.threads != 1))
     throw std::invalid_argument("--doubles: of nearest hits and of any, on one thread");
@@ -309,7 +324,7 @@ void add_trace_command(CLI::App& tool) {
                               "--camera", "--image", "--heatmap", "--counters", "--json"});
   options->declare_against(*command, {{"embree", "on the same instruction sets"},
                                       {"cgal", "AABB_tree, for --query all and --doubles"},
-                                      {"scene", "the tree as the only instance of a scene"},
+                                      {"scene", "a scene that has the tree, or its parts, as instances"},
                                       {"user", "a caller's own test in a tree of boxes"}});
   SceneTraceOptions& trace = options->trace;
   add_list(*command, "--mode", options->modes, all_mode_names(),
@@ -326,6 +341,12 @@ void add_trace_command(CLI::App& tool) {
       ->check(CLI::IsMember(builders))
       ->default_str("binned_sah, or sah");
   command->add_flag("--optimize", trace.optimize, "move parts of the BVH to where they cost less");
+  command
+      ->add_option(
+          "--parts", options->parts,
+          "cut the mesh for scenes and Embree: into so many parts of whole connected pieces, or into the "
+          "groups of the file")
+      ->capture_default_str();
   add_choices(*command, "--query", options->queries, list_query_names,
               "find lists of hits, crossings or their number instead of the nearest hit");
   add_number(*command, "--samples", trace.samples, {1, 1024},

@@ -109,9 +109,24 @@ void with_packet(EmbreeMode mode, const With& with) {
   }
 }
 
+// Parts of one mesh, whose hits are numbered as its triangles.
+struct Numbering {
+  std::vector<std::uint32_t> first;  // of each part's triangles; empty: there is one mesh
+  bool are_instances = false;
+
+  template <typename Packet>
+  void renumber(const Packet& packet, std::span<Hit> hits) const {
+    if (first.empty()) return;
+    for (std::size_t lane = 0; lane < hits.size(); ++lane)
+      if (hits[lane]) hits[lane].primitive += first[packet.part(lane, are_instances)];
+  }
+  template <typename Packet>
+  void renumber(const Packet&, std::span<std::uint8_t>) const {}
+};
+
 template <typename Query>
-void trace(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-           std::span<typename Query::Result> results) {
+void trace(RTCScene scene, const Numbering& numbering, EmbreeMode mode, bool coherent,
+           std::span<const Ray> rays, std::span<typename Query::Result> results) {
   RTCIntersectContext context = make_context(coherent);
   with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
     for_each_packet<lanes>(rays, results, [&](const Ray* in, typename Query::Result* out) {
@@ -119,13 +134,14 @@ void trace(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> 
       packet.lay_out(in);
       packet.trace(scene, context);
       packet.write(out);
+      numbering.renumber(packet, std::span(out, lanes));
     });
   });
 }
 
 template <typename Query>
-double trace_packed(RTCScene scene, EmbreeMode mode, bool coherent, std::span<const Ray> rays,
-                    std::span<typename Query::Result> results) {
+double trace_packed(RTCScene scene, const Numbering& numbering, EmbreeMode mode, bool coherent,
+                    std::span<const Ray> rays, std::span<typename Query::Result> results) {
   using Clock = std::chrono::steady_clock;
   using Result = typename Query::Result;
   RTCIntersectContext context = make_context(coherent);
@@ -138,7 +154,10 @@ double trace_packed(RTCScene scene, EmbreeMode mode, bool coherent, std::span<co
     for (Packet& packet : packets) packet.trace(scene, context);
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
     at = 0;
-    for_each_packet<lanes>(rays, results, [&](const Ray*, Result* out) { packets[at++].write(out); });
+    for_each_packet<lanes>(rays, results, [&](const Ray*, Result* out) {
+      packets[at].write(out);
+      numbering.renumber(packets[at++], std::span(out, lanes));
+    });
   });
   return seconds;
 }
@@ -161,12 +180,15 @@ struct EmbreeContender::Scene {
   RTCScene scene = nullptr;
   double build_seconds = 0;
   std::size_t vertex_count = 0;
+  std::vector<RTCScene> parts;  // of instances
+  Numbering numbering;
 
   Scene(std::string_view isa, int threads) : device(open_device(isa, threads)) {
     rtcSetDeviceErrorFunction(device, keep_first_error, &error);
   }
   ~Scene() {
     if (scene != nullptr) rtcReleaseScene(scene);
+    for (const RTCScene part : parts) rtcReleaseScene(part);
     rtcReleaseDevice(device);
   }
   Scene(const Scene&) = delete;
@@ -176,7 +198,27 @@ struct EmbreeContender::Scene {
     if (!error.empty()) throw std::runtime_error(error);
   }
 
-  void add(std::span<const Float3> vertices, std::span<const Index3> triangles, EmbreeBuild build) {
+  RTCScene new_scene(EmbreeBuild build) const {
+    const RTCScene made = rtcNewScene(device);
+    check();
+    rtcSetSceneFlags(made, flags_of(build));
+    rtcSetSceneBuildQuality(made, quality_of(build));
+    return made;
+  }
+
+  void add_instance(const Mesh& part, EmbreeBuild build) {
+    parts.push_back(new_scene(build));
+    add(parts.back(), part.vertices, part.triangles, build);
+    rtcCommitScene(parts.back());
+    const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, parts.back());
+    rtcCommitGeometry(instance);
+    rtcAttachGeometry(scene, instance);
+    rtcReleaseGeometry(instance);
+  }
+
+  void add(RTCScene to, std::span<const Float3> vertices, std::span<const Index3> triangles,
+           EmbreeBuild build) const {
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (geometry == nullptr) return;
     // A scene of low quality has a tree for each geometry, by the geometry's quality: medium unless it says low.
@@ -185,26 +227,44 @@ struct EmbreeContender::Scene {
     fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
+    rtcAttachGeometry(to, geometry);
     rtcReleaseGeometry(geometry);
+  }
+
+  // Makes the scene: fill() adds what is in it.
+  template <typename Fill>
+  void build(EmbreeBuild build, const Fill& fill) {
+    const SubnormalsAreZero subnormals;
+    const auto begin = std::chrono::steady_clock::now();
+    scene = new_scene(build);
+    fill();
+    rtcCommitScene(scene);
+    build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    check();
   }
 };
 
 EmbreeContender::EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
                                  std::string_view isa, EmbreeBuild build, int threads) {
   validate_mesh(vertices, triangles);
-  const SubnormalsAreZero subnormals;
   scene_ = std::make_unique<Scene>(isa, threads);
   scene_->vertex_count = vertices.size();
-  const auto begin = std::chrono::steady_clock::now();
-  scene_->scene = rtcNewScene(scene_->device);
-  scene_->check();
-  rtcSetSceneFlags(scene_->scene, flags_of(build));
-  rtcSetSceneBuildQuality(scene_->scene, quality_of(build));
-  if (!triangles.empty()) scene_->add(vertices, triangles, build);
-  rtcCommitScene(scene_->scene);
-  scene_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  scene_->check();
+  scene_->build(build, [&] {
+    if (!triangles.empty()) scene_->add(scene_->scene, vertices, triangles, build);
+  });
+}
+
+EmbreeContender::EmbreeContender(const Parts& parts, bool are_instances, std::string_view isa,
+                                 EmbreeBuild build)
+    : scene_(std::make_unique<Scene>(isa, 1)) {
+  scene_->numbering = {parts.first, are_instances};
+  scene_->build(build, [&] {
+    for (const Mesh& part : parts.meshes)
+      if (are_instances)
+        scene_->add_instance(part, build);
+      else
+        scene_->add(scene_->scene, part.vertices, part.triangles, build);
+  });
 }
 
 EmbreeContender::~EmbreeContender() = default;
@@ -242,19 +302,20 @@ bool EmbreeContender::native(EmbreeMode mode) const {
 void EmbreeContender::trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const {
   const SubnormalsAreZero subnormals;
   if (set.query == Query::closest)
-    bench::trace<Closest>(scene_->scene, mode, coherent, set.rays, answers.hits);
+    bench::trace<Closest>(scene_->scene, scene_->numbering, mode, coherent, set.rays, answers.hits);
   else
-    bench::trace<Any>(scene_->scene, mode, coherent, set.rays, answers.occluded);
+    bench::trace<Any>(scene_->scene, scene_->numbering, mode, coherent, set.rays, answers.occluded);
   scene_->check();
 }
 
 double EmbreeContender::trace_packed(EmbreeMode mode, bool coherent, const RaySet& set,
                                      Answers& answers) const {
   const SubnormalsAreZero subnormals;
-  const double seconds =
-      set.query == Query::closest
-          ? bench::trace_packed<Closest>(scene_->scene, mode, coherent, set.rays, answers.hits)
-          : bench::trace_packed<Any>(scene_->scene, mode, coherent, set.rays, answers.occluded);
+  const double seconds = set.query == Query::closest
+                             ? bench::trace_packed<Closest>(scene_->scene, scene_->numbering, mode, coherent,
+                                                            set.rays, answers.hits)
+                             : bench::trace_packed<Any>(scene_->scene, scene_->numbering, mode, coherent,
+                                                        set.rays, answers.occluded);
   scene_->check();
   return seconds;
 }

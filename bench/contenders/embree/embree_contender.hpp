@@ -13,6 +13,8 @@
 #include <raylanes/queries.hpp>
 #include <raylanes/types.hpp>
 
+#include "../../support/scenes/parts.hpp"
+
 namespace raylanes::bench {
 
 struct RaySet;
@@ -50,6 +52,9 @@ class EmbreeContender {
   // validate_mesh), std::runtime_error if the CPU lacks the instruction set or Embree reports an error.
   EmbreeContender(std::span<const Float3> vertices, std::span<const Index3> triangles,
                   std::string_view isa = "", EmbreeBuild build = EmbreeBuild::medium, int threads = 1);
+  // Parts of one mesh, each a geometry of its own: all in one scene, or each placed as an instance with the identity.
+  // Hits are numbered as the triangles of the whole mesh.
+  EmbreeContender(const Parts& parts, bool are_instances, std::string_view isa, EmbreeBuild build);
   ~EmbreeContender();
 
   // Wall-clock seconds of the copy of the mesh into Embree and the build of its tree.

@@ -174,6 +174,9 @@ struct ClosestPacket {
   void write(Hit* hits) const {
     for (std::size_t at = 0; at < W::lanes; at += 4) write_four_hits(packet, at, hits + at);
   }
+  unsigned part(std::size_t lane, bool is_instance) const {
+    return is_instance ? packet.hit.instID[0][lane] : packet.hit.geomID[lane];
+  }
 };
 
 template <typename W>
@@ -230,6 +233,9 @@ struct ClosestRay {
     const bool misses = query.hit.geomID == RTC_INVALID_GEOMETRY_ID;
     *hit = misses ? Hit{infinity, 0, 0, no_primitive}
                   : Hit{query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+  }
+  unsigned part(std::size_t, bool is_instance) const {
+    return is_instance ? query.hit.instID[0] : query.hit.geomID;
   }
 };
 

@@ -23,6 +23,9 @@ EmbreeContender::EmbreeContender(std::span<const Float3>, std::span<const Index3
                                  EmbreeBuild, int) {
   refuse();
 }
+EmbreeContender::EmbreeContender(const Parts&, bool, std::string_view, EmbreeBuild) {
+  refuse();
+}
 EmbreeContender::~EmbreeContender() = default;
 double EmbreeContender::build_seconds() const {
   refuse();

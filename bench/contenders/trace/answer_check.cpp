@@ -25,7 +25,7 @@ double others_per_million(const Answers& answers, const Answers& reference) {
 
 void AnswerCheck::check(std::vector<Entry>& entries, const Question& question) {
   const auto is_single = [](const Entry& e) {
-    return e.is_embree() && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
+    return e.row.contender == "embree" && (e.row.mode == "single" || e.is_call()) && e.row.build == "medium";
   };
   const auto single = std::find_if(entries.begin(), entries.end(), is_single);
   Answers of_single(question.set), answers(question.set);
@@ -110,7 +110,8 @@ const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& count
 void rate(std::vector<Entry>& entries) {
   const auto best_of = [&](bool calls, bool packed, const auto& counts) {
     return candidate_of(entries, [&](const Entry& e) {
-      return e.is_embree() && e.is_call() == calls && e.contender.is_packed() == packed && counts(e);
+      return e.row.contender == "embree" && e.is_call() == calls && e.contender.is_packed() == packed &&
+             counts(e);
     });
   };
   const auto is_fast = [](const Entry& e) { return !e.is_robust(); };
@@ -126,10 +127,14 @@ void rate(std::vector<Entry>& entries) {
     });
     if (!entry.is_ours() && !entry.is_embree() && tree != nullptr)
       entry.row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
-    const Entry* const best = best_of(calls, false, is_fast);
-    if (!entry.is_ours() || best == nullptr) continue;
+    const char* const rival = entry.row.contender == "scene_moving" ? "embree_instances" : "embree";
+    const Entry* const best = candidate_of(entries, [&](const Entry& e) {
+      return e.row.contender == rival && e.is_call() == calls && !e.contender.is_packed() && is_fast(e);
+    });
+    if (!(entry.is_ours() || entry.is_scene()) || best == nullptr) continue;
     entry.row.ratio = speed_ratio(entry.timing, best->timing);
     entry.row.ratio_to = best->row.build + " " + best->row.mode;
+    if (!entry.is_ours()) continue;
     entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, false, is_single)->timing);
     entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, false, is_robust)->timing);
     if (const Entry* const packed = best_of(calls, true, is_fast))

@@ -21,7 +21,8 @@ struct Entry {
   bool is_exact = false;  // compared by scene_contenders.hpp
 
   bool is_ours() const { return row.contender == "raylanes"; }
-  bool is_embree() const { return row.contender == "embree"; }
+  bool is_embree() const { return row.contender.starts_with("embree"); }
+  bool is_scene() const { return row.contender.starts_with("scene"); }
   bool is_call() const { return row.mode.starts_with("call"); }
   bool is_robust() const { return form == oracle::Form::embree_robust; }
 };

@@ -29,12 +29,15 @@ class Tracer {
  public:
   Tracer(Scene scene, const SceneTraceOptions& options) : options_(options) {
     result_.scene = std::move(scene);
+    parts_ = cut();
+    result_.parts = parts_.first.size();
     build();
     workload_ = std::make_unique<Workload>(result_.scene, *bvh_, options.width, options.height, options.order,
                                            options.samples);
     reference_ = our_contender(*bvh_, {});
     check_.emplace(result_.scene, tree(), reference_, options.trace);
-    if (options.against_scene || options.against_user) scenes_.emplace(result_.scene.mesh, *bvh_);
+    if (options.against_scene) add_scene();
+    if (options.against_user) user_.emplace(result_.scene.mesh, *bvh_);
     if (std::find(options_.tests.begin(), options_.tests.end(), TriangleTest::exact) != options_.tests.end())
       undecided_lanes_.emplace(result_.scene.mesh);
   }
@@ -47,7 +50,7 @@ class Tracer {
     ProgressLine progress(result_.scene.name + ": timing");
     std::size_t done = 0;
     for (const auto& group : groups) {
-      const std::list<EmbreeContender> embrees = embrees_for(group);
+      const std::list<NamedEmbree> embrees = embrees_for(group);
       for (const Question& question : questions) {
         const double steps = static_cast<double>(groups.size() * questions.size());
         race(question, group, embrees,
@@ -64,6 +67,27 @@ class Tracer {
 
  private:
   using Progress = std::function<void(double)>;
+  struct NamedEmbree {
+    std::string name;
+    EmbreeBuild build;
+    std::unique_ptr<EmbreeContender> embree;
+  };
+
+  Parts cut() {
+    Scene& scene = result_.scene;
+    if (options_.by_groups) return parts_of_groups(scene.mesh, scene.groups);
+    return options_.parts == 1 ? parts_of_groups(scene.mesh, {}) : cut_into_parts(scene.mesh, options_.parts);
+  }
+  bool has_parts() const { return parts_.first.size() > 1; }
+
+  void add_scene() {
+    scenes_.emplace(parts_);
+    if (!has_parts()) return;
+    const auto [first, next] = scenes_->seconds_of_a_move();
+    result_.summary += "\n" + std::to_string(parts_.first.size()) +
+                       " parts; update() after one of them moved: " + significant(1e3 * first, 3) +
+                       " ms, then " + significant(1e3 * next, 3) + " ms";
+  }
 
   // A BVH makes the rays, and the answers that a k-d tree is held to.
   void build() {
@@ -141,13 +165,16 @@ class Tracer {
   }
 
   // None for the scalar path: Embree has no counterpart.
-  std::list<EmbreeContender> embrees_for(const std::vector<const Path*>& group) const {
-    std::list<EmbreeContender> embrees;
+  std::list<NamedEmbree> embrees_for(const std::vector<const Path*>& group) const {
+    std::list<NamedEmbree> embrees;
     const std::string isa = group[0]->isa;
-    const Mesh& mesh = result_.scene.mesh;
-    if (options_.against_embree && isa != "scalar")
-      for (const EmbreeBuild build : traced_embree_builds)
-        embrees.emplace_back(mesh.vertices, mesh.triangles, isa, build);
+    if (!options_.against_embree || isa == "scalar") return embrees;
+    for (const EmbreeBuild build : traced_embree_builds) {
+      embrees.push_back({"embree", build, std::make_unique<EmbreeContender>(parts_, false, isa, build)});
+      if (has_parts())
+        embrees.push_back(
+            {"embree_instances", build, std::make_unique<EmbreeContender>(parts_, true, isa, build)});
+    }
     return embrees;
   }
 
@@ -191,14 +218,13 @@ class Tracer {
     }
   }
   void add_scenes(std::vector<Entry>& entries, const Question& question, const Path& path) const {
-    if (!scenes_ || question.set.query != Query::closest) return;
     std::vector<NamedContender> named;
     const auto add = [&](std::vector<NamedContender> more) {
       std::move(more.begin(), more.end(), std::back_inserter(named));
     };
-    if (options_.against_scene) add(scenes_->scenes(path, false));
-    if (options_.against_scene && options_.calls) add(scenes_->scenes(path, true));
-    if (options_.against_user) add(scenes_->user(path));
+    if (scenes_) add(scenes_->ways(path, false));
+    if (scenes_ && options_.calls) add(scenes_->ways(path, true));
+    if (user_ && question.set.query == Query::closest) add(user_->ways(path));
     for (NamedContender& one : named) {
       Entry entry = our_entry(std::move(one.way), question, path, TriangleTest::exact, 0);
       entry.row.contender = one.name, entry.row.test = {}, entry.row.open = {};
@@ -214,18 +240,19 @@ class Tracer {
   }
 
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
-                  const EmbreeContender& embree, EmbreeBuild build) const {
+                  const NamedEmbree& named) const {
+    const auto& [name, build, embree] = named;
     const bool is_robust = build == EmbreeBuild::robust;
     std::vector<Contender> contenders;
-    if (!options_.modes.empty()) contenders = embree_contenders(embree);
+    if (!options_.modes.empty()) contenders = embree_contenders(*embree);
     if (options_.calls)
-      for (Contender& caller : embree_callers(embree)) contenders.push_back(std::move(caller));
+      for (Contender& caller : embree_callers(*embree)) contenders.push_back(std::move(caller));
     for (Contender& contender : contenders) {
       TraceRow row = new_row(question, contender);
       row.batch = contender.mode.starts_with("call") ? 1 : 0;
-      row.contender = "embree", row.path = "embree-" + isa, row.isa = isa;
+      row.contender = name, row.path = "embree-" + isa, row.isa = isa;
       row.build = embree_build_names[static_cast<std::size_t>(build)],
-      row.build_seconds = embree.build_seconds();
+      row.build_seconds = embree->build_seconds();
       entries.push_back({std::move(contender),
                          is_robust ? oracle::Form::embree_robust : oracle::Form::embree_fast,
                          std::move(row)});
@@ -234,16 +261,14 @@ class Tracer {
 
   // Checks, times and rates one group on one ray set.
   void race(const Question& question, const std::vector<const Path*>& group,
-            const std::list<EmbreeContender>& embrees, const Progress& progress) {
+            const std::list<NamedEmbree>& embrees, const Progress& progress) {
     std::vector<Entry> entries;
     for (const Path* path : group) {
       add_ours(entries, question, *path);
       if (options_.calls) add_caller(entries, question, *path);
       add_scenes(entries, question, *path);
     }
-    auto build = traced_embree_builds.begin();
-    for (const EmbreeContender& embree : embrees)
-      add_embree(entries, question, group[0]->isa, embree, *build++);
+    for (const NamedEmbree& embree : embrees) add_embree(entries, question, group[0]->isa, embree);
     check_->check(entries, question);
     Answers answers(question.set);
     std::vector<std::function<double()>> work;
@@ -286,7 +311,9 @@ class Tracer {
   std::size_t bytes_ = 0;
   std::unique_ptr<Workload> workload_;
   std::optional<UndecidedLaneCounter> undecided_lanes_;
+  Parts parts_;  // at least one, all of the mesh
   std::optional<SceneContenders> scenes_;
+  std::optional<UserContenders> user_;
   Contender reference_;  // single rays with all that is the default
   std::optional<AnswerCheck> check_;
 };

@@ -28,10 +28,13 @@ struct SceneTraceOptions {
   bool optimize = false;
   KdBuilder kd_builder = KdBuilder::sah;
   bool against_embree = false;
-  // Compares the tree in a scene, and a user's own test, with the BVH's modes automatic and call by the exact test, for
-  // nearest hits; see scene_contenders.hpp.
+  // Compares scenes, and for nearest hits a user's own test, with the BVH's modes automatic and call by the exact test;
+  // see scene_contenders.hpp.
   bool against_scene = false, against_user = false;
-  bool counts = false;  // what ours cost, too
+  // In how many parts the mesh is cut for scenes and for Embree, which has a geometry for each part; 1: it is not.
+  std::size_t parts = 1;
+  bool by_groups = false;  // the parts are the groups of the file
+  bool counts = false;     // what ours cost, too
   bool counts_pixels = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -48,7 +51,7 @@ struct TraceRow {
   std::size_t ray_count = 0;
   std::string path;
   std::string isa;
-  std::string contender;  // raylanes, embree, or one of scene_contenders.hpp
+  std::string contender;  // raylanes, embree, embree_instances, or one of scene_contenders.hpp
   std::string mode;
   std::size_t batch = 0;             // rays of a call; 0: all at once
   std::optional<TriangleTest> test;  // of ours
@@ -58,7 +61,8 @@ struct TraceRow {
   std::vector<double> rounds_mrays_per_second;
   // Our speed by Embree's on the same instruction set, by rounds: by its best mode over trees of either quality, by its
   // best single rays over these, by its best mode over its robust tree; and by its best mode from rays in its own
-  // layout. Calls with a ray are compared with its calls with a ray.
+  // layout. Calls with a ray are compared with its calls with a ray. Scenes have the first one only: those whose parts
+  // moved by Embree's instances.
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
   std::string ratio_to;  // which its best mode is
   std::optional<Quartiles>
@@ -80,6 +84,7 @@ struct SceneTrace {
   Scene scene;
   std::string summary;
   std::string build;  // by which builder
+  std::size_t parts = 1;
   std::vector<TraceRow> rows;
   std::string verdict;
   bool sound = true;  // what must have the same bytes has, and exact arithmetic blames us for no disagreement

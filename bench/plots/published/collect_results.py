@@ -28,6 +28,8 @@ KEYS = {
     'sizes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second',
               'spread', 'ratio', 'ratio_to', 'nodes_per_ray', 'leaves_per_ray', 'bytes'),
     'modes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'mode', 'mrays_per_second', 'spread'),
+    'parts': ('scene', 'triangles', 'parts', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second',
+              'spread', 'ratio', 'ratio_to', 'ratio_to_tree'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
@@ -68,6 +70,8 @@ def is_shown(kind, row):
         return 'nanoseconds' in row
     if kind == 'kernels':
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
+    if kind == 'parts':
+        return row['contender'].startswith('scene')
     return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes') or row['contender'] == 'raylanes'
 
 

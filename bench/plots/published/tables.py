@@ -128,6 +128,28 @@ def sizes_table(results):
                   '× Embree', 'lines a ray', 'bytes a triangle'], [line(*case) for case in cases])
 
 
+def parts_table(results):
+    """Scenes of many parts by calls and batches, beside one tree of all and beside Embree."""
+    kinds = results.names('rays')
+    columns = [(contender, mode, key) for contender, keys in (('scene', ('ratio_to_tree', 'ratio')),
+                                                              ('scene_moving', ('ratio',)))
+               for mode in ('call', 'automatic') for key in keys]
+
+    def cells(value):
+        return [pair(value(rays=kind, contender=contender, mode=mode, key=key) for kind in kinds)
+                for contender, mode, key in columns]
+
+    cases = dict.fromkeys((row['scene'], row['parts']) for row in results.rows)
+    lines = [[f'{scene}, {parts:,}', path, *cells(
+        lambda key, **values: results.one(scene=scene, parts=parts, path=path, **values)[key])]
+             for scene, parts in cases for path in TWO_PATHS]
+    lines += [['**geometric mean**', path, *cells(lambda key, **values: results.mean(key, path=path, **values))]
+              for path in TWO_PATHS]
+    return table(['scene, parts', 'ISA path', 'calls / one tree', "calls × Embree's flat scene", 'batches / one tree',
+                  "batches × Embree's flat scene", "moving: calls × Embree's instances", 'moving: batches × the same'],
+                 lines)
+
+
 def modes_table(results):
     """The time of automatic by the least of any mode and of a loop of calls, for each size of picture."""
     def regret(path, **case):
@@ -169,7 +191,7 @@ def cliffs_table(results):
     return table(['case', 'exact, ns', 'watertight, ns'], lines)
 
 
-TABLES = {'sizes': ('sizes', sizes_table), 'modes': ('modes', modes_table),
+TABLES = {'sizes': ('sizes', sizes_table), 'parts': ('parts', parts_table), 'modes': ('modes', modes_table),
           'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
           'short_roots': ('cliffs', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),

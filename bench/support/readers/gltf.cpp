@@ -230,11 +230,12 @@ void append_primitive(Mesh& mesh, const tinygltf::Model& model, const tinygltf::
 
 }  // namespace
 
-Mesh read_gltf(const std::filesystem::path& file) {
+FileMesh read_gltf(const std::filesystem::path& file) {
   const tinygltf::Model model = load_gltf(file);
-  Mesh mesh;
+  FileMesh mesh;
   for (const PlacedMesh& placed : placed_meshes(model)) {
     const std::string name = "meshes[" + std::to_string(placed.mesh) + "]";
+    mesh.groups.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
     const auto& primitives = at(model.meshes, placed.mesh, "nodes", "mesh").primitives;
     for (std::size_t i = 0; i < primitives.size(); ++i)
       append_primitive(mesh, model, primitives[i], placed.to_world,

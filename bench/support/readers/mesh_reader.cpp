@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t ra2_triangle_bytes = 36;
 constexpr std::size_t longest_name = 400;  // in messages
 
-template <Mesh (*read)(std::istream&)>
-Mesh read_stream(const std::filesystem::path& file) {
+template <FileMesh (*read)(std::istream&)>
+FileMesh read_stream(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot be opened for reading");
   return read(in);
@@ -28,7 +28,7 @@ Mesh read_stream(const std::filesystem::path& file) {
 
 struct Format {
   const char* extension;
-  Mesh (*read)(const std::filesystem::path&);
+  FileMesh (*read)(const std::filesystem::path&);
 };
 
 constexpr std::array formats{
@@ -58,10 +58,10 @@ void require_regular_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(status)) throw std::runtime_error("is not a regular file");
 }
 
-Mesh read_checked(const std::filesystem::path& file) {
+FileMesh read_checked(const std::filesystem::path& file) {
   const Format& format = format_of(file);
   require_regular_file(file);
-  Mesh mesh = format.read(file);
+  FileMesh mesh = format.read(file);
   if (mesh.triangles.empty()) throw std::runtime_error("has no triangles");
   validate_mesh(mesh.vertices, mesh.triangles);
   return mesh;
@@ -76,7 +76,7 @@ float little_endian_float(const char* bytes) {
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& file) {
+FileMesh read_mesh(const std::filesystem::path& file) {
   try {
     return read_checked(file);
   } catch (const std::exception& error) {
@@ -84,7 +84,7 @@ Mesh read_mesh(const std::filesystem::path& file) {
   }
 }
 
-Mesh read_ra2(std::istream& in) {
+FileMesh read_ra2(std::istream& in) {
   in.seekg(0, std::ios::end);
   const auto size = static_cast<std::size_t>(in.tellg());
   in.seekg(0);
@@ -94,7 +94,7 @@ Mesh read_ra2(std::istream& in) {
   const std::size_t count = size / ra2_triangle_bytes;
   if (count > std::numeric_limits<std::uint32_t>::max() / 3)
     throw std::runtime_error("has " + std::to_string(count) + " triangles, allowed are 1431655765");
-  Mesh mesh;
+  FileMesh mesh;
   mesh.vertices.reserve(3 * count);
   mesh.triangles.reserve(count);
   std::array<char, ra2_triangle_bytes> bytes{};

@@ -1,11 +1,19 @@
 // Reads the triangles of a mesh file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include <raylanes/mesh.hpp>
 
 namespace raylanes::bench {
+
+// A mesh, and the first triangle of each group that the file names: of OBJ a group or an object, of glTF a node with a
+// mesh. Other formats have no groups.
+struct FileMesh : Mesh {
+  std::vector<std::uint32_t> groups;
+};
 
 // The triangles of `file`, chosen by its extension (letter case does not matter): .obj, .ply (ASCII, binary of either
 // byte order), .stl (ASCII, binary), .gltf, .glb, or .ra2 (nine little-endian float32 for each triangle, x y z of three
@@ -16,6 +24,6 @@ namespace raylanes::bench {
 // The result has passed validate_mesh and has at least one triangle. Anything else throws std::runtime_error with one
 // line that starts with the name of the file: unknown extension, missing or truncated file, a directory, bad syntax, a
 // polygon with fewer than three corners, an index out of range, a NaN or infinite coordinate, no triangles.
-Mesh read_mesh(const std::filesystem::path& file);
+FileMesh read_mesh(const std::filesystem::path& file);
 
 }  // namespace raylanes::bench

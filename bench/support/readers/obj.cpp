@@ -24,6 +24,7 @@ struct ObjText {
   std::vector<Float3> vertices;
   std::vector<std::size_t> corners;
   std::vector<PendingPolygon> polygons;
+  std::vector<std::size_t> groups;  // their first polygons
 };
 
 // Cuts the first word off `text`; empty if there is none.
@@ -83,6 +84,8 @@ void parse_line(ObjText& obj, std::string_view text, std::size_t line) {
     obj.polygons.push_back({obj.corners.size(), line});
     for (std::string_view word = take_word(text); !word.empty() && word[0] != '#'; word = take_word(text))
       obj.corners.push_back(parse_corner(word, obj.vertices.size()));
+  } else if (statement == "g" || statement == "o") {
+    obj.groups.push_back(obj.polygons.size());
   } else if (std::any_of(statement.begin(), statement.end(), [](char c) { return c == '\0'; })) {
     throw std::runtime_error("is not text");
   }
@@ -116,12 +119,15 @@ ObjText parse_obj(std::istream& in) {
 
 }  // namespace
 
-Mesh read_obj(std::istream& in) {
+FileMesh read_obj(std::istream& in) {
   ObjText obj = parse_obj(in);
-  Mesh mesh;
+  FileMesh mesh;
   mesh.vertices = std::move(obj.vertices);
   mesh.triangles.reserve(obj.polygons.size());
+  auto group = obj.groups.begin();
   for (std::size_t i = 0; i < obj.polygons.size(); ++i) {
+    for (; group != obj.groups.end() && *group == i; ++group)
+      mesh.groups.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
     const std::size_t begin = obj.polygons[i].first_corner;
     const std::size_t end =
         i + 1 < obj.polygons.size() ? obj.polygons[i + 1].first_corner : obj.corners.size();

@@ -43,8 +43,8 @@ struct BitPoint {
 };
 
 template <typename Point>
-Mesh to_mesh(const std::vector<Point>& points, const Polygons& polygons) {
-  Mesh mesh;
+FileMesh to_mesh(const std::vector<Point>& points, const Polygons& polygons) {
+  FileMesh mesh;
   mesh.vertices.reserve(points.size());
   mesh.triangles.reserve(polygons.size());
   for (const Point& p : points)
@@ -69,7 +69,7 @@ bool read_ply_body(std::istream& in, std::vector<WidePoint>& points, Polygons& p
 
 }  // namespace
 
-Mesh read_ply(std::istream& in) {
+FileMesh read_ply(std::istream& in) {
   const PlyHeader header = read_ply_header(in);
   if (header.is_ascii) check_ply_numbers(in, header);
   in.clear();
@@ -84,7 +84,7 @@ Mesh read_ply(std::istream& in) {
   return to_mesh(points, polygons);
 }
 
-Mesh read_stl(std::istream& in) {
+FileMesh read_stl(std::istream& in) {
   std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (bytes.empty()) return {};
   // CGAL guesses by the first word, and tries the other format on what the first attempt left over.

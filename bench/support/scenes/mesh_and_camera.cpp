@@ -102,10 +102,10 @@ Scene load_scene(const std::string& name_or_path) {
     return make_procedural_scene(name_or_path);
   const std::filesystem::path file(name_or_path);
   if (!file.has_extension() && !std::filesystem::exists(file)) return make_procedural_scene(name_or_path);
-  Mesh mesh = read_mesh(file);
-  if (const auto listed = find_in_list(file)) return {listed->name, std::move(mesh), listed->camera};
-  const Camera camera = automatic_camera(mesh);
-  return {file.stem().string(), std::move(mesh), camera};
+  FileMesh mesh = read_mesh(file);
+  std::optional<ListedScene> listed = find_in_list(file);
+  if (!listed) listed = {file.stem().string(), automatic_camera(mesh)};
+  return {std::move(listed->name), std::move(mesh), listed->camera, std::move(mesh.groups)};
 }
 
 }  // namespace raylanes::bench

@@ -1,8 +1,10 @@
 // The input of a picture or a measurement: triangles and a camera.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <raylanes/mesh.hpp>
 
@@ -23,6 +25,7 @@ struct Scene {
   std::string name;
   Mesh mesh;
   Camera camera;
+  std::vector<std::uint32_t> groups = {};  // of the file: the first triangle of each, see FileMesh
 };
 
 // The smallest box around all triangles, empty for an empty mesh, and the length of its diagonal, then 0.

@@ -21,6 +21,7 @@ FAULTS = {
         ("--doubles", "trace hall --offset 1"), ("--samples 5 square", "trace --samples 5"),
         ("--against", "trace hall --against scene --tree kdtree"),
         ("--against", "trace hall --against user --test watertight"),
+        ("--parts groups 1000000", "trace hall --parts 0"), ("--parts", "trace hall --parts 2 --doubles"),
         ("median kdtree", "trace hall --tree kdtree --build median"), ("midpoint bvh", "trace hall --build midpoint"),
         ("bvh kdtree", "trace hall --tree octree"), ("--tree auto", "trace hall --tree auto --build median"),
         ("watertight plane_edges", "kernels --test best"), ("hardware goldschmidt", "roots --method hardware,best"),

@@ -81,6 +81,12 @@ RUNS = [
      values([row for row in rows if row["contender"] != "raylanes"], "contender", "mode") == WAYS and
      all_of(row["ratio_to_tree"] > 0 and not row.get("wrong_per_million")
             for row in of(rows, contender="scene") + of(rows, contender="scene_turned"))),
+    ("trace spheres --parts 100 --against scene --mode automatic,call --size 24x16", None, "parts; update()",
+     lambda rows: values(rows, "contender", "mode") == {(name, mode) for name in ("raylanes", "scene", "scene_moving")
+                                                        for mode in ("automatic", "call")} and
+     not any(row.get("wrong_per_million") for row in rows)),
+    ("trace groups.obj --parts groups --against scene --size 8x8", None, "2 parts", lambda rows:
+     values(rows, "triangles") == {24} and not any(row.get("wrong_per_million") for row in rows)),
     ("trace hall --build spatial_splits --optimize --size 8x8", None, "",
      lambda rows: values(rows, "build") == {"spatial_splits+optimized"}),
     ("points box.obj --points grid --grid 4x3x2 --query inside,signed --image slice.png --against cgal",
@@ -126,6 +132,11 @@ BESIDE_EMBREE = [
     ("trace hall --test exact,moller_trumbore --grade fast --size 32x32 --against embree", None, "", lambda rows:
      all_of(row["ours_wrong"] == 0 and ("apart_per_million" in row) == (row["test"] != "exact")
             for row in of(rows, contender="raylanes"))),
+    ("trace spheres --parts 40 --size 24x16 --rays primary,diffuse --mode automatic,call --against scene,embree", None,
+     "", lambda rows: values(rows, "contender") ==
+     {"raylanes", "scene", "scene_moving", "embree", "embree_instances"} and
+     all_of(row["ratio"] > 0 for row in rows if not row["contender"].startswith("embree")) and
+     all_of(row["ours_wrong"] == 0 for row in rows if "ours_wrong" in row)),
     ("trees hall --stages --rounds 1 --threads 2 --against embree", None, "", lambda rows: len(rows) == 5 and
      all_of({"build_ratio_to_embree", "refit_ratio_to_embree"} <= row.keys() for row in rows[:2])),
     ("trees --frames frame0.obj frame1.obj frame2.obj --size 8x8 --rounds 1 --against embree", None, "",

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import resource
 import struct
 import subprocess
@@ -9,9 +10,11 @@ import tempfile
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-BOX = "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + (
-    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
+FACES = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+BOX = "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + FACES
+BOX_ABOVE = BOX.splitlines(keepends=True)[:8] + [re.sub(r"\d", lambda number: str(int(number[0]) - 9), FACES)]
 MESHES = {"flat.obj": TRIANGLE, "box.obj": BOX, "open.obj": BOX.replace("f 5 6 8 7\n", ""),
+          "groups.obj": "g below\n" + BOX + "g above\n" + "".join(BOX_ABOVE).replace(" 1\n", " 3\n"),
           **{f"frame{n}.obj": f"v 0 0 {n}\nv 1 0 0\nv 0 1 0\nv 1 1 {-n}\nf 1 2 3\nf 2 4 3\n" for n in range(3)}}
 
 # What --help says about exit statuses.
