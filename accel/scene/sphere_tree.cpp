@@ -63,35 +63,45 @@ struct SphereVisit {
   void at(const LeafVisit& leaf) const {
     const float* rows[4];
     for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + leaf.first;
+    const auto all = static_cast<std::uint8_t>((1u << leaf.primitives.size()) - 1);
     for (const std::uint32_t i : leaf.rays) {
-      std::uint8_t others = 0xff;
-      if (leaf.skip != nullptr)
-        for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
-          if (leaf.primitives[k] == leaf.skip[i]) others = static_cast<std::uint8_t>(others & ~(1u << k));
+      const std::uint8_t skipped = skipped_of(leaf, i);
       if (leaf.after != nullptr) {
-        keep_both_sides(leaf, i, rows, others);
+        keep_both_sides(leaf, i, rows, all, skipped);
         continue;
       }
+      if (skipped != 0) keep_both_sides(leaf, i, rows, skipped, skipped);
+      const auto others = static_cast<std::uint8_t>(all & ~skipped);
       Hit hit;
-      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), others == 0xff ? nullptr : &others,
+      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), skipped == 0 ? nullptr : &others,
                              hit);
       if (!hit) continue;
       hit.primitive = leaf.primitives[hit.primitive];
       leaf.keep(i, hit);
     }
   }
-  // Keeps both hits of each sphere that closest_of_spheres() would find, from the same numbers.
+  // The bit of the sphere that the ray skips; 0: none of this leaf.
+  static std::uint8_t skipped_of(const LeafVisit& leaf, std::uint32_t i) {
+    for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
+      if (leaf.skips(i, leaf.primitives[k])) return static_cast<std::uint8_t>(1u << k);
+    return 0;
+  }
+  // Keeps both hits of each of `some` spheres that closest_of_spheres() would find, from the same numbers; of a skipped
+  // sphere the one farther from the begin of the segment: a ray that begins on a sphere has the other one there.
   void keep_both_sides(const LeafVisit& leaf, std::uint32_t i, const float* const (&rows)[4],
-                       const std::uint8_t& others) const {
+                       std::uint8_t some, std::uint8_t skipped) const {
     const Ray& ray = leaf.ray[i];
     std::uint8_t is_hit = 0;
     float t[2][tree_width];
-    row.distances_of_spheres(ray, rows, leaf.primitives.size(), &others, &is_hit, t[0], t[1]);
-    for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
-      for (const float(&side)[tree_width] : t)
-        if ((is_hit & others & 1u << k) != 0 && side[k] >= ray.tmin && side[k] <= ray.tmax &&
-            std::isfinite(side[k]))
-          leaf.keep(i, {side[k], 0, 0, leaf.primitives[k]});
+    row.distances_of_spheres(ray, rows, leaf.primitives.size(), &some, &is_hit, t[0], t[1]);
+    for (std::size_t k = 0; k < leaf.primitives.size(); ++k) {
+      if ((is_hit & some & 1u << k) == 0) continue;
+      const bool skips_near = std::abs(t[0][k] - ray.tmin) <= std::abs(t[1][k] - ray.tmin);
+      for (std::size_t side = 0; side < 2; ++side)
+        if (((skipped & 1u << k) == 0 || (side == 0) != skips_near) && t[side][k] >= ray.tmin &&
+            t[side][k] <= ray.tmax && std::isfinite(t[side][k]))
+          leaf.keep(i, {t[side][k], 0, 0, leaf.primitives[k]});
+    }
   }
 };
 

@@ -160,8 +160,8 @@ struct VisitOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;             ///< as in TraceOptions; each of them calls the test
   LaneBits active = nullptr;   ///< the active rays; null: all
-  /// For each ray a primitive that is not there for it; empty: none; as in TraceOptions. A LeafTest or LeafFunction of
-  /// your own looks at LeafVisit::skip.
+  /// For each ray a primitive that is not there for it, of a sphere one hit (SphereTree::closest()); empty: none; as in
+  /// TraceOptions. A LeafTest or LeafFunction of your own looks at LeafVisit::skip.
   PrimitiveView skip = {};
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
   /// For closest(): returns for ray i the first hit behind after[i], by t, then by primitive; otherwise as

@@ -138,8 +138,8 @@ class Scene {
 
   // Queries: options apply to the triangles within geometries. TraceOptions::skip and after take hits in scenes: in
   // closest(), after[i] is the hit behind which ray i looks, in the order of t, then instance, then primitive. The
-  // test is exact then. A sphere has two hits, where a ray enters and leaves it; primitives of your own have
-  // those that their test finds, as VisitOptions::after says. TraceOptions::facing means the sides of a geometry in
+  // test is exact then. A sphere has two hits, in and out: skip leaves out the one nearer to tmin. Your own primitives
+  // have what their test finds, as VisitOptions::after says. TraceOptions::facing means the sides of a geometry in
   // its own space: an instance that mirrors a solid is entered at fronts, too. Scenes with spheres refuse it; the test
   // of your own primitives decides for itself. Counters include the top level. Each thread keeps its scratch memory
   // until it ends: 30 to 40 MB after batches of 131,072 rays, less after smaller ones.

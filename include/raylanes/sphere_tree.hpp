@@ -28,8 +28,8 @@ class SphereTree {
 
   /// Returns the nearest surface that the ray meets, with the bytes that closest_hit() of <raylanes/spheres.hpp>
   /// returns for all spheres, on every ISA path. Spheres that reach beyond the largest float are not hit.
-  /// A sphere has two hits, where the ray enters and leaves it: options.after finds one behind the other.
-  /// Throws as BoundedTree::closest() does.
+  /// A sphere has two hits, in and out: options.after finds one behind the other. If options.skip names a sphere, its
+  /// hit nearer to tmin, where the ray begins, is not there; the other one is. Throws as BoundedTree::closest() does.
   Hit closest(const Ray& ray, const VisitOptions& options = {}) const;
   /// Returns whether the ray meets the surface of a sphere. A ray inside a sphere does not. Throws as closest() does.
   bool occluded(const Ray& ray, const VisitOptions& options = {}) const;

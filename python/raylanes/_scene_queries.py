@@ -45,7 +45,7 @@ class SceneQueries:
             The sides of triangles that count, in the space of their geometry. A scene with spheres has "any" alone.
         skip : SceneHits, optional
             A primitive of an instance for each ray that is not there for it, such as the one that the ray begins on.
-            Spheres may be skipped, too; a miss leaves out none. The test must be "exact".
+            A skipped sphere lacks the hit nearer to tmin alone. A miss leaves out none. The test must be "exact".
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional

@@ -117,7 +117,8 @@ class SphereTree(Copied):
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are misses.
         skip : array of uint32, or hits, optional
-            A sphere for each ray that is not there for it, as in Bvh.closest().
+            A sphere for each ray, given as in Bvh.closest(). Its hit nearer to tmin is not there, so a ray that begins
+            on the sphere and goes inwards hits it where it leaves.
         threads : int, default 0
             At most so many threads; 0: all cores.
 
@@ -131,6 +132,8 @@ class SphereTree(Copied):
         >>> spheres = raylanes.SphereTree([[0, 0, 0], [4, 0, 0]], radii=1)
         >>> spheres.closest(raylanes.rays([[0, 0, 5], [4, 0, 0]], [0, 0, -1])).t
         array([4., 1.], dtype=float32)
+        >>> spheres.closest(raylanes.rays([[0, 0, 1]], [0, 0, -1]), skip=[0]).t  # from a sphere inwards
+        array([2.], dtype=float32)
         """
         asked = _asked(threads, progress, skip)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
