@@ -33,7 +33,7 @@ struct BvhDArrays : NodesOfMesh {
         mesh_bounds(other.mesh_bounds) {}
 
   DoubleTreeView view() const {
-    return {{nodes.data(), nullptr, root, bounds}, halves.data(), frame, mesh_bounds};
+    return {{nodes.data(), nullptr, live_root(), bounds}, halves.data(), frame, mesh_bounds};
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }
 };
@@ -53,7 +53,7 @@ inline DoubleTreeView view_of(const std::unique_ptr<BvhDArrays>& tree) {
               : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
 }
 
-// As BvhD::each_triangle().
+// As BvhD::each_triangle(): without those that collapsed at a refit.
 template <class Visit>
 void each_triangle(const BvhDArrays& tree, const Visit& visit) {
   const TrianglesOfHalves triangles{tree.halves.data()};
@@ -65,7 +65,8 @@ void each_triangle(const BvhDArrays& tree, const Visit& visit) {
       for (int k = 0; k < 9; ++k)
         corners[static_cast<std::size_t>(k / 3)][static_cast<std::size_t>(k % 3)] =
             triangles.number(k, triangle);
-      visit(triangles.primitive(triangle), corners);
+      if (!has_equal_corners(corners[0], corners[1], corners[2]))
+        visit(triangles.primitive(triangle), corners);
     }
   });
 }

@@ -135,7 +135,7 @@ class Check {
       refuse("root", tree_.root, "is not the first node");
     if (is_leaf) check_leaf(tree_.root);
     if (!is_leaf && !is_empty) depths_[0] = 1;
-    validate_bounds(tree_.bounds, is_empty);
+    validate_bounds(tree_.bounds, is_empty || tree_.bounds.lo == empty_box.lo);
     if (!(tree_.built_cost >= 0 && std::isfinite(tree_.built_cost))) refuse("cost", 0, "is none");
   }
 
@@ -143,15 +143,15 @@ class Check {
     const WideNode& node = tree_.nodes[index];
     if (depths_[index] == 0) refuse("node", index, "has no parent before it");
     if (depths_[index] > max_tree_depth) refuse("node", index, "is too deep");
-    if (node.occupied == 0 || node.occupied >> tree_width != 0)
-      refuse("node", index, "has impossible children");
+    const bool has_children = std::any_of(std::begin(node.child), std::end(node.child),
+                                          [](TreeReference child) { return child != empty_reference; });
+    if (!has_children || node.occupied >> tree_width != 0) refuse("node", index, "has impossible children");
     if (std::any_of(std::begin(node.unused), std::end(node.unused), [](std::uint32_t x) { return x != 0; }))
       refuse("node", index, "has something behind it");
     for (std::size_t slot = 0; slot < tree_width; ++slot) {
       const bool is_occupied = (node.occupied >> slot & 1u) != 0;
       check_box(index, slot, is_occupied);
-      if (!is_occupied && node.child[slot] != empty_reference) refuse("node", index, "has a child too many");
-      if (is_occupied) check_child(index, node.child[slot]);
+      if (is_occupied || node.child[slot] != empty_reference) check_child(index, node.child[slot]);
     }
   }
 
@@ -214,7 +214,7 @@ class Check {
 //   each node but the first is the child of one node before it, no deeper than max_tree_depth, and has children itself;
 //   each block, or half, belongs to the leaf of one node, or alone to the root; a lane in use has finite corners and a
 //   triangle of the mesh, another one NaN and no_primitive;
-//   boxes are finite, lo <= hi, empty slots are as WideNode says; the bounds are such a box, too;
+//   boxes are finite, lo <= hi, others are as WideNode says; the bounds are such a box, or that of nothing;
 //   triangles that are left out rise, and are triangles of the mesh.
 // Whether boxes hold what is below them is not looked at: where they do not hits are missed, and no more.
 void validate_tree(const BvhArrays& tree) {
@@ -223,7 +223,7 @@ void validate_tree(const BvhArrays& tree) {
 
 void validate_tree(const BvhDArrays& tree) {
   Check<double>(tree, tree.halves.data(), tree.halves.size()).run();
-  validate_bounds(tree.mesh_bounds, tree.root == empty_reference);
+  validate_bounds(tree.mesh_bounds, tree.live_root() == empty_reference);
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (!std::isfinite(tree.frame.centre[axis]))
       refuse("frame along axis", axis, "has a centre that is none");

@@ -27,6 +27,8 @@ struct NodesOfMesh {
   BuildOptions built_with;              // but for what reports progress
   TreeReport build_report;              // what the build took; the rest is counted where it is asked for
 
+  // For queries: nothing where no triangle is left, also after a refit.
+  TreeReference live_root() const { return bounds.lo[0] <= bounds.hi[0] ? root : empty_reference; }
   void set_build(const BuildOptions& options, std::size_t triangles, TreeReport report) {
     mesh_triangles = triangles;
     built_with = options;
@@ -52,7 +54,7 @@ struct BvhArrays : TreeLeaves, NodesOfMesh {
   bool rays_wait = false;
 
   TreeView view() const {
-    TreeView view{nodes.data(), corners.blocks(), root, bounds};
+    TreeView view{nodes.data(), corners.blocks(), live_root(), bounds};
     view.streams_from = streams_from;
     view.rays_wait = rays_wait;
     return view;

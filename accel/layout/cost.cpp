@@ -17,7 +17,7 @@ void for_each_area(const NodesOfMesh& tree, Visit visit) {
 }  // namespace
 
 double sah_cost(const NodesOfMesh& tree) {
-  if (tree.root == empty_reference) return 0;
+  if (tree.live_root() == empty_reference) return 0;
   const double whole = half_area_of(tree.bounds);
   double sum = 0;
   for_each_area(tree, [&](TreeReference child, double area) { sum += cost_of(child) * area; });

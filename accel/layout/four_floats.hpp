@@ -46,6 +46,12 @@ class FourFloats {
     return vreinterpretq_f32_u32(vorrq_u32(vreinterpretq_u32_f32(a.raw_), vreinterpretq_u32_f32(b.raw_)));
   }
 
+  // Whether some lane is equal in all three; subnormals that are flushed equal zeros.
+  friend bool any_equal(const FourFloats (&a)[3], const FourFloats (&b)[3]) {
+    const auto equal = [&](int i) { return vceqq_f32(a[i].raw_, b[i].raw_); };
+    return vmaxvq_u32(vandq_u32(vandq_u32(equal(0), equal(1)), equal(2))) != 0;
+  }
+
   // The second operand where one is NaN or both are zeros.
   friend FourFloats min(FourFloats a, FourFloats b) {
     return vbslq_f32(vcltq_f32(a.raw_, b.raw_), a.raw_, b.raw_);
@@ -97,6 +103,12 @@ class FourFloats {
     return _mm_castsi128_ps(_mm_cmpgt_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(last_below)));
   }
   friend FourFloats operator|(FourFloats a, FourFloats b) { return _mm_or_ps(a.raw_, b.raw_); }
+
+  // Whether some lane is equal in all three; subnormals that are flushed equal zeros.
+  friend bool any_equal(const FourFloats (&a)[3], const FourFloats (&b)[3]) {
+    const auto equal = [&](int i) { return _mm_cmpeq_ps(a[i].raw_, b[i].raw_); };
+    return _mm_movemask_ps(_mm_and_ps(_mm_and_ps(equal(0), equal(1)), equal(2))) != 0;
+  }
 
   // The second operand where one is NaN or both are zeros.
   friend FourFloats min(FourFloats a, FourFloats b) { return _mm_min_ps(a.raw_, b.raw_); }

@@ -137,6 +137,7 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
   std::uint32_t names[tree_width];
   std::memcpy(names, numbers + 9 * tree_width, sizeof names);
   BoxOfLanes box;
+  bool has_collapsed = false;
   for (std::size_t first = 0; first < count; first += 4) {
     // Lanes without a triangle take the last one's corners: no branch, which would be guessed wrongly too often.
     const std::byte* points[3][4];  // by corner
@@ -146,14 +147,24 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
         points[corner][lane] = vertices.address(triangle[corner]);
     }
     const FourFloats unused = FourFloats::all_bits_from(count - first);
+    const FourPoints four[3] = {FourPoints(points[0]), FourPoints(points[1]), FourPoints(points[2])};
+    has_collapsed |= any_equal(four[0].axis, four[1].axis) | any_equal(four[1].axis, four[2].axis) |
+                     any_equal(four[2].axis, four[0].axis);
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const FourPoints four(points[corner]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const FourFloats row = four.axis[axis];
+        const FourFloats row = four[corner].axis[axis];
         box.extend(axis, row, row);
         (row | unused).store_aligned(numbers + (3 * corner + axis) * tree_width + first);
       }
     }
+  }
+  if (has_collapsed) [[unlikely]] {
+    Box of_others = empty_box;
+    LeafLanes<float>{numbers, tree_width}.refill(
+        count, vertices, triangles, [&](const Float3& a, const Float3& b, const Float3& c) {
+          extend(of_others, a), extend(of_others, b), extend(of_others, c);
+        });
+    return of_others;
   }
   return box.box();
 }

@@ -1,6 +1,8 @@
 // The leaves of a tree: blocks of the corners of up to eight triangles.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,12 +11,49 @@
 
 #include <raylanes/mesh.hpp>
 
+#include "../../dispatch/bits.hpp"
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../batch/meters.hpp"
 #include "reference.hpp"
 
 namespace raylanes {
+
+// A leaf's lanes, whose corners have numbers of type T.
+template <class T>
+struct LeafLanes {
+  T* numbers;         // nine rows, and the triangles behind them
+  std::size_t lanes;  // of a row
+
+  std::uint32_t* primitives() const { return reinterpret_cast<std::uint32_t*>(numbers + 9 * lanes); }
+  void set(std::size_t lane, const std::array<T, 3>& a, const std::array<T, 3>& b,
+           const std::array<T, 3>& c) const {
+    const std::array<T, 3>* const corners[] = {&a, &b, &c};
+    for (std::size_t k = 0; k < 9; ++k) numbers[k * lanes + lane] = (*corners[k / 3])[k % 3];
+  }
+
+  // Writes the corners of the first `size` triangles again, from a mesh that has them. Triangles with two equal
+  // corners have collapsed: builds leave them out. Their lanes get a corner of another triangle, so that nothing is
+  // outside of the box around those that are left; extend(a, b, c) is called for these alone.
+  template <class Extend>
+  void refill(std::size_t size, const VertexRecords<T>& vertices, const IndexView& triangles,
+              const Extend& extend) const {
+    std::array<T, 3> inside{};
+    std::uint32_t collapsed = 0;
+    for (std::size_t lane = 0; lane < size; ++lane) {
+      const Index3 t = triangles[primitives()[lane]];
+      const std::array<T, 3> a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
+      if (has_equal_corners(a, b, c)) {
+        collapsed |= 1u << lane;
+        continue;
+      }
+      set(lane, a, b, c), extend(a, b, c);
+      inside = a;
+    }
+    for (; collapsed != 0; collapsed &= collapsed - 1)
+      set(static_cast<std::size_t>(std::countr_zero(collapsed)), inside, inside, inside);
+  }
+};
 
 // LeafBlock<9>, one after the other.
 class Leaves {
@@ -32,15 +71,14 @@ class Leaves {
   std::span<const std::uint32_t> names(std::size_t index, std::size_t count) const {
     return {static_cast<const LeafBlock<9>*>(blocks())[index].primitive, count};
   }
-  // Writes the corners of the first `count` triangles of a block again, from a mesh that has them; returns the box
-  // around them.
+  // As LeafLanes::refill(), for a block; returns the box.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
 
   // The place of each triangle: the primitive in the upper half, and below it eight times a block
   // plus a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
   std::vector<std::uint64_t> places() const;
 
-  // The triangle in a place.
+  // The triangle in a place; if it has collapsed, with equal corners.
   Triangle triangle(std::uint64_t place) const;
 
   // The area of the triangles of a block.

@@ -12,8 +12,9 @@
 
 namespace raylanes {
 
-// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it. If there is
-// a refill.fetch(node), it is called before the leaves of a node are written.
+// New boxes for nodes whose leaves change: refill(leaf) writes a leaf again and returns the box around it, an empty one
+// if all its triangles have collapsed. Children with empty boxes are occupied no longer. If there is a
+// refill.fetch(node), it is called before the leaves of a node are written.
 template <class Refill>
 class NodeRefitter {
  public:
@@ -24,7 +25,7 @@ class NodeRefitter {
   void refit(int threads) const {
     if (tree_.root == empty_reference) return;
     if (refers_to_leaf(tree_.root)) {
-      tree_.bounds = refill_(tree_.root);
+      set_bounds(refill_(tree_.root));
       return;
     }
     if (threads == 1) {
@@ -37,10 +38,16 @@ class NodeRefitter {
       });
       for (std::size_t i = upper.begin; i-- > 0;) update(upper.nodes[i]);
     }
-    tree_.bounds = box_of(tree_.root);
+    set_bounds(box_of(tree_.root));
   }
 
  private:
+  // Zeros have no sign, as after a build: see four_box().
+  void set_bounds(const Box& box) const {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      tree_.bounds.lo[axis] = box.lo[axis] + 0.0f, tree_.bounds.hi[axis] = box.hi[axis] + 0.0f;
+  }
+
   // The number of subtrees shared out among threads: with so many, a large one keeps no thread waiting for long.
   static constexpr std::size_t wanted_subtrees = 512;
 
@@ -48,13 +55,15 @@ class NodeRefitter {
   void update(std::uint32_t index) const {
     WideNode& node = tree_.nodes[index];
     if constexpr (requires { refill_.fetch(node); }) refill_.fetch(node);
-    for (std::uint32_t left = node.occupied; left != 0; left &= left - 1) {
-      const auto slot = static_cast<std::size_t>(std::countr_zero(left));
+    node.occupied = 0;
+    for (std::size_t slot = 0; slot < tree_width; ++slot) {
+      if (node.child[slot] == empty_reference) continue;
       const Box box = refers_to_leaf(node.child[slot]) ? refill_(node.child[slot]) : box_of(node.child[slot]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         node.lo[axis][slot] = box.lo[axis];
         node.hi[axis][slot] = box.hi[axis];
       }
+      node.occupied |= (box.lo[0] <= box.hi[0] ? 1u : 0u) << slot;
     }
   }
 
@@ -96,7 +105,7 @@ class NodeRefitter {
     std::uint32_t inner = 0;
     for (std::uint32_t slot = 0; slot < tree_width; ++slot)
       inner |= (refers_to_leaf(node.child[slot]) ? 0u : 1u) << slot;
-    return inner & node.occupied;
+    return inner;
   }
 
   // The upper nodes of the tree, parents first: those before `begin` in `nodes`, and below them the roots of subtrees.

@@ -72,7 +72,7 @@ TreeReport report_of(const NodesOfMesh& tree, std::size_t leaves, std::size_t by
   report.leaves = leaves;
   report.bytes = bytes;
   report.sah_cost = sah_cost(tree);
-  if (tree.root != empty_reference) Counting(tree, report).count();
+  if (tree.live_root() != empty_reference) Counting(tree, report).count();
   return report;
 }
 

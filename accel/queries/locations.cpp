@@ -177,13 +177,14 @@ template void find_winding_numbers(const Surface<double>&, const VertexViewD&, s
 
 namespace {
 
-// The triangles of a tree in the order of their primitives, each once.
+// The triangles of a tree in the order of their primitives, each once, without those that have collapsed.
 std::vector<Corners> triangles_of(const Leaves& leaves) {
   const std::vector<std::uint64_t> places = leaves.places();
   std::vector<Corners> triangles;
   triangles.reserve(places.size());
   for (const std::uint64_t place : places) {
     const Triangle triangle = leaves.triangle(place);
+    if (has_equal_corners(triangle.corner[0], triangle.corner[1], triangle.corner[2])) continue;
     Corners& corners = triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) corners.vertex[k] = triangle.corner[k];
   }

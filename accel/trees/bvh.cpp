@@ -35,7 +35,7 @@ BvhView Bvh::view() const& noexcept {
   if (!tree_) return {{}, {}, empty_reference, empty_box};
   return {tree_->nodes,
           {static_cast<const LeafBlock<9>*>(tree_->corners.blocks()), tree_->corners.count()},
-          tree_->root,
+          tree_->live_root(),
           tree_->bounds};
 }
 

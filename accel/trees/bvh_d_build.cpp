@@ -11,10 +11,8 @@
 namespace raylanes {
 namespace {
 
-// Around the triangles that have a leaf: all but those that were left out at the build, or at a build now. Parts are
-// joined in their order, so that zeros keep their signs.
-BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int threads,
-               const std::vector<std::uint32_t>* left_out = nullptr) {
+// Around the triangles that a build takes. Parts are joined in their order, so that zeros keep their signs.
+BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int threads) {
   constexpr std::size_t grain = 1 << 14;
   std::vector<BoxD> parts((triangles.count + grain - 1) / grain, empty_double_box);
   in_parallel(parts.size(), 1, threads, [&](std::size_t first, std::size_t last) {
@@ -22,9 +20,7 @@ BoxD bounds_of(const VertexViewD& vertices, const IndexView& triangles, int thre
       for (std::size_t i = part * grain; i < std::min((part + 1) * grain, triangles.count); ++i) {
         const Index3 t = triangles[i];
         const Double3 a = vertices[t[0]], b = vertices[t[1]], c = vertices[t[2]];
-        if (has_equal_corners(a, b, c) &&
-            (left_out == nullptr || std::binary_search(left_out->begin(), left_out->end(), i)))
-          continue;
+        if (has_equal_corners(a, b, c)) continue;
         extend(parts[part], a), extend(parts[part], b), extend(parts[part], c);
       }
   });
@@ -59,29 +55,19 @@ Box box_in(const TreeFrame& frame, const Double3& a, const Double3& b, const Dou
   return box;
 }
 
-// The memory of a leaf, as TrianglesOfHalves reads it.
-struct LeafMemory {
-  double* numbers;
-  std::uint32_t lanes;
-
-  LeafMemory(BvhDArrays& tree, LeafReference leaf)
-      : numbers(reinterpret_cast<double*>(tree.halves[leaf.block].bytes)), lanes(lanes_of_leaf(leaf.size)) {}
-  std::uint32_t* primitives() const { return reinterpret_cast<std::uint32_t*>(numbers + 9 * lanes); }
-  void set(std::uint32_t lane, const VertexViewD& vertices, const Index3& t) const {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Double3 p = vertices[t[corner]];
-      for (std::size_t axis = 0; axis < 3; ++axis) numbers[(3 * corner + axis) * lanes + lane] = p[axis];
-    }
-  }
-};
+// As TrianglesOfHalves reads them.
+LeafLanes<double> lanes_of(BvhDArrays& tree, LeafReference leaf) {
+  return {reinterpret_cast<double*>(tree.halves[leaf.block].bytes), lanes_of_leaf(leaf.size)};
+}
 
 void fill_leaf(BvhDArrays& tree, LeafReference leaf, std::span<const std::uint32_t> primitives,
                const VertexViewD& vertices, const IndexView& triangles) {
-  const LeafMemory memory(tree, leaf);
-  std::memset(static_cast<void*>(memory.numbers), 0xff, halves_of_leaf(leaf.size) * sizeof(LeafHalf));
+  const LeafLanes<double> lanes = lanes_of(tree, leaf);
+  std::memset(static_cast<void*>(lanes.numbers), 0xff, halves_of_leaf(leaf.size) * sizeof(LeafHalf));
   for (std::uint32_t lane = 0; lane < leaf.size; ++lane) {
-    memory.set(lane, vertices, triangles[primitives[lane]]);
-    memory.primitives()[lane] = primitives[lane];
+    const Index3 t = triangles[primitives[lane]];
+    lanes.set(lane, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+    lanes.primitives()[lane] = primitives[lane];
   }
 }
 
@@ -150,17 +136,15 @@ std::vector<CornersOf<double>> triangles_of(const BvhDArrays& tree) {
 }
 
 void refit_bvh_d(BvhDArrays& tree, const VertexViewD& vertices, const IndexView& triangles, int threads) {
-  const BoxD bounds = bounds_of(vertices, triangles, threads, &tree.left_out);
+  const BoxD bounds = bounds_of(vertices, triangles, threads);
   const TreeFrame frame = frame_of(bounds);
   const auto refill = [&](TreeReference reference) {
     const LeafReference leaf = leaf_of(reference);
-    const LeafMemory memory(tree, leaf);
     Box box = empty_box;
-    for (std::uint32_t lane = 0; lane < leaf.size; ++lane) {
-      const Index3 t = triangles[memory.primitives()[lane]];
-      memory.set(lane, vertices, t);
-      extend(box, box_in(frame, vertices[t[0]], vertices[t[1]], vertices[t[2]]));
-    }
+    lanes_of(tree, leaf)
+        .refill(leaf.size, vertices, triangles, [&](const Double3& a, const Double3& b, const Double3& c) {
+          extend(box, box_in(frame, a, b, c));
+        });
     return box;
   };
   NodeRefitter(tree, refill).refit(threads);

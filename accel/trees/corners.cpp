@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
 #include "../doubles/bvh_d_arrays.hpp"
 #include "../queries/traced_tree.hpp"
@@ -17,12 +18,13 @@ void require_corners(const PrimitiveView& primitives, std::size_t triangles) {
   if (primitives.first == nullptr && primitives.count > 0)
     throw std::invalid_argument("corners: a view of primitives points to nothing");
 }
-// The corners of a primitive that is no triangle of the tree.
-template <class AnyTriangle, class T>
-AnyTriangle no_triangle() {
-  AnyTriangle triangle;
-  for (auto& corner : triangle.corner) corner.fill(std::numeric_limits<T>::quiet_NaN());
-  return triangle;
+// A triangle of the tree, which has three different corners; otherwise NaN.
+template <class Corner>
+void write(const Corner& a, const Corner& b, const Corner& c, auto& triangle) {
+  using T = typename Corner::value_type;
+  triangle = {{a, b, c}};
+  if (!has_equal_corners(a, b, c)) return;
+  for (Corner& corner : triangle.corner) corner.fill(std::numeric_limits<T>::quiet_NaN());
 }
 
 }  // namespace
@@ -35,8 +37,9 @@ void TriangleTree::corners(PrimitiveView primitives, std::span<Triangle> triangl
   for (std::size_t k = 0; k < triangles.size(); ++k) {
     const std::uint64_t primitive = primitives[k];
     const auto place = std::lower_bound(places.begin(), places.end(), primitive << 32);
-    triangles[k] = place != places.end() && *place >> 32 == primitive ? tree.leaves->corners.triangle(*place)
-                                                                      : no_triangle<Triangle, float>();
+    Triangle found{};
+    if (place != places.end() && *place >> 32 == primitive) found = tree.leaves->corners.triangle(*place);
+    write(found.corner[0], found.corner[1], found.corner[2], triangles[k]);
   }
 }
 void BvhD::corners(PrimitiveView primitives, std::span<TriangleD> triangles) const {
@@ -45,14 +48,8 @@ void BvhD::corners(PrimitiveView primitives, std::span<TriangleD> triangles) con
   if (tree_ && primitives.count > 0) all = triangles_of(*tree_);
   for (std::size_t k = 0; k < triangles.size(); ++k) {
     const std::uint32_t primitive = primitives[k];
-    triangles[k] = no_triangle<TriangleD, double>();
-    if (primitive >= all.size()) continue;
-    const CornersOf<double>& of = all[primitive];
-    const auto is_same = [&](std::size_t i, std::size_t j) {
-      return std::equal(of.vertex[i].begin(), of.vertex[i].end(), of.vertex[j].begin());
-    };
-    if (is_same(0, 1) && is_same(1, 2)) continue;  // it has no leaf
-    for (std::size_t i = 0; i < 3; ++i) triangles[k].corner[i] = of.vertex[i];
+    const CornersOf<double> found = primitive < all.size() ? all[primitive] : CornersOf<double>{};
+    write(found.vertex[0], found.vertex[1], found.vertex[2], triangles[k]);
   }
 }
 

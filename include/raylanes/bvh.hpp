@@ -49,9 +49,10 @@ class Bvh : public TriangleTree {
 
   /// Makes this the tree of another mesh with as many triangles, such as the same mesh in motion, far faster than a
   /// build: nodes keep their triangles, and get new boxes.
-  /// Queries then return what a tree built over the new mesh returns. Boxes hold whole triangles afterwards, so the
-  /// gain of spatial splits is lost. The indices may differ from the build's. If a triangle that was left out
-  /// for two equal corners has three different ones now, refit() builds the tree again.
+  /// All queries, also bounds(), then return what a tree built over the new mesh returns. Triangles that have two equal
+  /// corners now are left out; a later refit brings them back. If a triangle comes back that the last build left out,
+  /// refit() builds the tree again. Boxes hold whole triangles, so the gain of spatial splits is lost. The indices may
+  /// differ from the build's.
   /// `threads` is as in TraceOptions. Throws std::invalid_argument if validate_mesh() refuses the mesh, the number of
   /// triangles differs, or the thread count is negative. Strong exception guarantee: if this throws, the tree is
   /// unchanged.

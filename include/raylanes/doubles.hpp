@@ -251,12 +251,12 @@ class BvhD {
   /// KdTree or Scene; and std::bad_alloc if memory runs out. No bytes make a tree that faults.
   static BvhD load(std::istream& file);
 
-  /// Calls visit() with each triangle that the last build did not leave out, once, in the order of leaves. Corners are
+  /// Calls visit() with each triangle that the last build or refit did not leave out, by order of leaves. Corners are
   /// the doubles given, in the mesh's order. The function must not change the tree. An exception of it ends the call.
   /// Throws std::bad_function_call if the function is empty and the tree is not.
   void each_triangle(const TriangleVisitorD& visit) const;
 
-  /// Returns the box around all triangles that the last build did not leave out, as TriangleTree::bounds() does.
+  /// Returns the box around all triangles that no build or refit left out; otherwise as TriangleTree::bounds().
   BoxD bounds() const noexcept;
   std::size_t bytes() const noexcept;       ///< the bytes of nodes and leaves
   std::size_t node_count() const noexcept;  ///< the number of inner nodes

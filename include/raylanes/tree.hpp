@@ -38,13 +38,13 @@ struct LeafReference {
 }
 
 /// An inner node: the boxes of up to eight children, as one array per plane.
-/// Follow only children whose bit in `occupied` is set. An empty one has lo = +infinity, hi = −infinity and
-/// empty_reference, but its box does not stop every ray: a slab of infinite bounds may be NaN.
+/// Follow only children whose bit in `occupied` is set. Others have lo = +infinity, hi = −infinity (a slab may be NaN)
+/// and empty_reference; after a refit, their reference may be a child whose triangles all have two equal corners.
 struct alignas(64) WideNode {
   float lo[3][tree_width];
   float hi[3][tree_width];
   TreeReference child[tree_width];
-  std::uint32_t occupied;  ///< bit i: child i exists
+  std::uint32_t occupied;  ///< bit i: child i has triangles
   std::uint32_t unused[tree_width - 1];
 };
 static_assert(sizeof(WideNode) == 256);
@@ -64,7 +64,7 @@ inline constexpr int max_tree_depth = 96;
 struct BvhView {
   std::span<const WideNode> nodes;  ///< the root first, children behind their parent
   /// Corners v0 v1 v2, x y z of each; lanes without a triangle hold NaN. Every triangle of the mesh has one lane, but
-  /// triangles with two equal corners have none, and builders that split triangles give some several.
+  /// those with two equal corners have none, or three equal corners after a refit. Spatial splits give some several.
   std::span<const LeafBlock<9>> leaves;
   TreeReference root;  ///< empty_reference if there are no triangles
   Box bounds;          ///< around all triangles

@@ -274,8 +274,8 @@ class TriangleTree {
   /// Each call visits all leaves. Throws std::invalid_argument, before writing anything, if there are not as many
   /// triangles as primitives or a view points to nothing. std::bad_alloc passes through.
   void corners(PrimitiveView primitives, std::span<Triangle> triangles) const;
-  /// Returns the box around all triangles that the last build did not leave out; lo = +infinity and hi = −infinity if
-  /// there are none. A triangle that gets two equal corners at a refit stays in the box.
+  /// Returns the box around all triangles but those with two equal corners, which the last build or refit left out;
+  /// lo = +infinity and hi = −infinity if there are none.
   Box bounds() const noexcept;
 
  protected:

@@ -19,6 +19,19 @@ struct ScaledTriangles {
     return triangles.number(k, leaf_triangle) * scale;
   }
   std::uint32_t primitive(std::uint32_t leaf_triangle) const { return triangles.primitive(leaf_triangle); }
+  // Zeros of either sign are equal; subnormal numbers are what they are.
+  bool has_equal_corners(std::uint32_t leaf_triangle) const {
+    const auto differ = [&](int i, int j) {
+      std::uint64_t bits = 0;
+      for (int k = 0; k < 3; ++k) {
+        const auto a = std::bit_cast<std::uint64_t>(triangles.number(i + k, leaf_triangle)),
+                   b = std::bit_cast<std::uint64_t>(triangles.number(j + k, leaf_triangle));
+        bits |= (a | b) << 1 != 0 ? a ^ b : 0;
+      }
+      return bits != 0;
+    };
+    return !(differ(0, 3) && differ(3, 6) && differ(6, 0));
+  }
   // From these units. Weights may add up to a little more than 1, which must not overflow.
   void leave_units(ClosestPointD& closest) const {
     constexpr double most = std::numeric_limits<double>::max();

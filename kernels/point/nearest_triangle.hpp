@@ -22,8 +22,8 @@ inline Vec3<Doubles<N>> doubles_of(const Point& point) {
           Doubles<N>(static_cast<double>(point[2]))};
 }
 
-// The results of doubles for triangles, and which of them count. Trees of doubles have no triangles with equal corners,
-// but the squares of their edges may be flushed.
+// The results of doubles for triangles, and which of them count. In trees of doubles the squares of edges may be
+// flushed: whether two corners are equal is looked at later, by corners as they are.
 template <class T, class V>
 struct MeasuredTriangles {
   PointOnTriangle<V> on;
@@ -76,13 +76,15 @@ class NearestTriangle {
     }
   }
 
-  // One triangle that counts.
+  // One triangle.
   template <class Triangles>
   void keep(double distance_squared, double u, double v, std::uint32_t triangle, const Triangles& triangles) {
     const std::uint32_t primitive = triangles.primitive(triangle);
     if (distance_squared > distance_squared_ ||
         (distance_squared == distance_squared_ && primitive >= primitive_))
       return;
+    if constexpr (std::is_same_v<T, double>)
+      if (triangles.has_equal_corners(triangle)) return;
     distance_squared_ = distance_squared, u_ = u, v_ = v;
     triangle_ = triangle, primitive_ = primitive;
   }

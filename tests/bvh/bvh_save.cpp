@@ -89,7 +89,9 @@ TYPED_TEST(SavedTreeOf, wrong_parts_is_refused_though_its_checksum_is_right) {
   expect_refused({"block", "has a triangle"}, [](Inside& tree) {
     each_leaf_reference(tree, [](TreeReference& leaf) { leaf |= 7u << 28; });
   });
-  expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied = 0; });
+  expect_refused({"children"},
+                 [](Inside& tree) { std::ranges::fill(tree.nodes.back().child, empty_reference); });
+  expect_refused({"box"}, [](Inside& tree) { tree.nodes.back().occupied = 0; });
   expect_refused({"children"}, [](Inside& tree) { tree.nodes.back().occupied |= 256; });
   expect_refused({"behind"}, [](Inside& tree) { tree.nodes.back().unused[6] = 1; });
   expect_refused({"box"}, [](Inside& tree) { tree.nodes[1].lo[2][0] = nan; });

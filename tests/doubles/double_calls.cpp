@@ -247,43 +247,5 @@ TEST(DoubleCalls, refused_meshes_and_options) {
   EXPECT_TRUE(tree.closest({{0.2, 0.2, 1}, 0, {0, 0, -1}, 9}));
 }
 
-TEST(DoubleCalls, a_refit_that_brings_a_triangle_back_builds_again) {
-  std::vector<Double3> vertices{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<Index3> triangles{{0, 1, 3}, {0, 1, 2}};
-  BvhD tree(vertices, triangles);
-  vertices[2] = {0.5, -1, 0};
-  tree.refit(vertices, triangles);
-  EXPECT_EQ(tree.closest({{0.4, -0.2, 1}, 0, {0, 0, -1}, 9}).primitive, 1u);
-}
-
-// The corners of a triangle that collapses stay in the box until a build leaves it out: with doubles as with floats.
-TEST(DoubleCalls, bounds_keep_triangles_that_collapse) {
-  std::vector<Double3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {4, 4, 4}, {5, 4, 4}, {4, 4, 5}, {9, 9, 9}};
-  const std::vector<Index3> triangles{{0, 1, 2}, {3, 4, 5}, {6, 6, 0}};
-  std::vector<Float3> of_floats(vertices.size());
-  const auto corners_as_floats = [&] {
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) of_floats[i][k] = static_cast<float>(vertices[i][k]);
-    return VertexView(of_floats);
-  };
-  BvhD tree(vertices, triangles);
-  Bvh floats(corners_as_floats(), triangles);
-  const auto expect_bounds = [&](double hi, const char* when) {
-    EXPECT_EQ(tree.bounds().lo, (Double3{0, 0, 0})) << when;
-    EXPECT_EQ(tree.bounds().hi, (Double3{hi, hi, hi})) << when;
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(double{floats.bounds().hi[k]}, hi) << when;
-  };
-  EXPECT_EQ(tree.bounds().hi, (Double3{5, 4, 5}));
-  vertices[3] = vertices[4] = vertices[5] = {7, 7, 7};
-  for (const int threads : {1, 2}) {
-    tree.refit(vertices, triangles, threads), floats.refit(corners_as_floats(), triangles, threads);
-    expect_bounds(7, "after a refit");
-  }
-  EXPECT_FALSE(tree.occluded({{7, 7, 8}, 0, {0, 0, -1}, 9}));
-  tree = BvhD(vertices, triangles), floats = Bvh(corners_as_floats(), triangles);
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(tree.bounds().hi[k], double{floats.bounds().hi[k]});
-  EXPECT_EQ(tree.bounds().hi, (Double3{1, 1, 0}));
-}
-
 }  // namespace
 }  // namespace raylanes::testing

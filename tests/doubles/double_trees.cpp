@@ -32,26 +32,6 @@ TEST(DoubleTrees, say_what_was_chosen) {
   EXPECT_NE(std::pair(few.builder, few.optimized), std::pair(many.builder, many.optimized));
 }
 
-TEST(DoubleTrees, decay_as_they_are_refitted_and_stay_as_they_were) {
-  const Mesh soup = triangle_soup(900, 0.1f, 6);
-  DoubleMesh mesh = moved(soup, 1, {5e6, 0, 0});
-  const BvhD tree(mesh.vertices, mesh.triangles);
-  EXPECT_EQ(tree.decay(), 1.0);
-  EXPECT_EQ(tree.sah_cost(), tree.report().sah_cost);
-  const DoubleMesh before = mesh;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] = before.vertices[i * 7 % 2700];
-  const BvhD other = tree.refitted(mesh.vertices, mesh.triangles, 2);
-  EXPECT_GT(other.decay(), 2.0);
-  EXPECT_EQ(tree.decay(), 1.0);
-  const std::vector<RayD> rays = aimed_rays(mesh, 300, 7);
-  std::vector<HitD> hits(rays.size()), expected(rays.size());
-  other.closest(rays, hits), BvhD(mesh.vertices, mesh.triangles).closest(rays, expected);
-  EXPECT_TRUE(same_bytes(hits, expected));
-  EXPECT_THROW(tree.refitted(mesh.vertices, IndexView()), std::invalid_argument);
-  EXPECT_EQ(BvhD().refitted(VertexViewD(), IndexView()).decay(), 1.0);
-  EXPECT_EQ(BvhD().sah_cost(), 0.0);
-}
-
 TEST(DoubleTrees, tell_of_each_triangle_once) {
   DoubleMesh mesh = moved(double_fan(600, 0.3f), 0.7, {5e6, 0.2, -0.3});
   mesh.triangles.push_back({0, 1, 1});
@@ -63,11 +43,13 @@ TEST(DoubleTrees, tell_of_each_triangle_once) {
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_EQ(corners[k], mesh.vertices[mesh.triangles[primitive][k]]) << primitive;
     });
-    EXPECT_EQ(times.back(), 0) << "two corners are equal";
-    EXPECT_EQ(std::ranges::count(times, 1), static_cast<std::ptrdiff_t>(times.size()) - 1);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const auto [a, b, c] = corners_of(mesh, i);
+      EXPECT_EQ(times[i], a == b || b == c || c == a ? 0 : 1) << i;
+    }
   };
   expect_triangles();
-  // A triangle that a refit makes a line is still there.
+  // Those that collapse at a refit are not there.
   mesh.vertices[mesh.triangles[7][1]] = mesh.vertices[mesh.triangles[7][0]];
   tree.refit(mesh.vertices, mesh.triangles);
   expect_triangles();

@@ -315,9 +315,17 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
           !std::ranges::is_sorted(crossings[i], {}, &Crossing::t))
         fail("a list is not in order");
   };
-  if (is_bvh)
-    ask(Bvh(mesh, {.builder = builder}));
-  else
+  if (!is_bvh) {
     ask(KdTree(mesh, {.builder = kd_builder}));
+    return 0;
+  }
+  // Now and then of triangles of other vertices, of which some collapse or come back at a refit.
+  const bool refits = bytes.chance(64);
+  Mesh before = mesh;
+  for (std::uint32_t i = 0; refits && i < before.triangles.size(); ++i)
+    before.triangles[i] = {i, i + 1, i + 2};
+  Bvh tree(before, {.builder = builder});
+  if (refits) tree.refit(mesh.vertices, mesh.triangles);
+  ask(tree);
   return 0;
 }

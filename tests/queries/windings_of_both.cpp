@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../../dispatch/table/numbers.hpp"
+#include "../doubles/both_numbers.hpp"
 #include "../doubles/double_winding_cases.hpp"
 #include "chord_meshes.hpp"
 #include "open_meshes.hpp"
@@ -70,13 +71,6 @@ class WindingsOf : public ::testing::Test {
     EXPECT_GT(expect_windings(mesh, points, is_ordinary...), points.size() / 4);
     std::ranges::sort(points);
     EXPECT_GT(expect_windings(mesh, points, is_ordinary...), points.size() / 4);
-  }
-};
-using Numbers = ::testing::Types<float, double>;
-struct NumberNames {
-  template <class T>
-  static std::string GetName(int) {
-    return std::is_same_v<T, float> ? "float" : "double";
   }
 };
 TYPED_TEST_SUITE(WindingsOf, Numbers, NumberNames);
