@@ -82,6 +82,21 @@ float Leaves::fill(std::size_t index, VertexView vertices, IndexView triangles,
   return area;
 }
 
+std::uint32_t Leaves::strike(std::size_t index, std::uint32_t count, std::uint32_t first, std::uint32_t end) {
+  auto& leaf = static_cast<LeafBlock<9>*>(blocks())[index];
+  std::uint32_t left = 0;
+  for (std::uint32_t lane = 0; lane < count; ++lane) {
+    if (leaf.primitive[lane] >= first && leaf.primitive[lane] < end) continue;
+    for (auto& row : leaf.number) row[left] = row[lane];
+    leaf.primitive[left++] = leaf.primitive[lane];
+  }
+  for (std::uint32_t lane = left; lane < count; ++lane) {
+    for (auto& row : leaf.number) row[lane] = unused_lane;
+    leaf.primitive[lane] = no_primitive;
+  }
+  return left;
+}
+
 std::size_t Leaves::primitives(std::size_t index, std::uint32_t (&names)[tree_width]) const {
   std::memcpy(names, block(index) + 9 * tree_width, sizeof names);
   return static_cast<std::size_t>(std::find(names, names + tree_width, no_primitive) - names);

@@ -74,6 +74,10 @@ class Leaves {
   // As LeafLanes::refill(), for a block; returns the box.
   Box refill(std::size_t index, std::size_t count, const VertexView& vertices, const IndexView& triangles);
 
+  // Takes the primitives from `first` to before `end` out of the first `count` of a block; the others move up. Returns
+  // how many are left.
+  std::uint32_t strike(std::size_t index, std::uint32_t count, std::uint32_t first, std::uint32_t end);
+
   // The place of each triangle: the primitive in the upper half, and below it eight times a block
   // plus a lane. In the order of primitives, each once. The memory is by the blocks, whatever primitives these name.
   std::vector<std::uint64_t> places() const;

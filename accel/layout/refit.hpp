@@ -133,5 +133,8 @@ class NodeRefitter {
 // is valid and has each primitive of the tree. `threads` means the same as in TraceOptions. Throws only std::bad_alloc,
 // with several threads, before anything is written.
 void refit_tree(BvhArrays& tree, VertexView vertices, IndexView triangles, int threads);
+// Takes the triangles numbered from `first` to before `end` out of a tree, in place. All of them lie in the box. Leaves
+// get shorter, nodes that lose all their children go; boxes stay.
+void strike_triangles(BvhArrays& tree, const Box& box, std::uint32_t first, std::uint32_t end) noexcept;
 
 }  // namespace raylanes

@@ -101,7 +101,21 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   return choice;
 }
 
-// The row for a call with one ray. Null if the options set more than test, grade and path, or the test has no such row.
+// Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
+bool is_quick(const TreeView* ready) {
+  return ready != nullptr && !QuietFloats::are_wanted();
+}
+void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
+                    std::span<std::uint8_t> occluded, const TraceOptions& options) {
+  require_rays("trace", rays);
+  require_occluded("trace", occluded, what, rays.size());
+  require_skip("trace", rays.skip, rays.size());
+  const Traversal traversal = checked_traversal(tree, options);
+  trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+}
+
+}  // namespace
+
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual =
@@ -113,27 +127,12 @@ const CallRow* usual_row(const TraceOptions& options) {
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
-// Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
-bool is_quick(const TreeView* ready) {
-  return ready != nullptr && !QuietFloats::are_wanted();
-}
 const CallRow& default_row() {
   constexpr TraceOptions options;
   constexpr auto test = static_cast<std::size_t>(options.test),
                  grade = static_cast<std::size_t>(options.grade);
   return kernels_of(path_in_use()).traversal.call.row[test][grade];
 }
-
-void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const TraceOptions& options) {
-  require_rays("trace", rays);
-  require_occluded("trace", occluded, what, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  const Traversal traversal = checked_traversal(tree, options);
-  trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
-}
-
-}  // namespace
 
 void detail::require_ordered_hits(bool are_ordered) {
   if (!are_ordered)

@@ -19,9 +19,17 @@ struct TracedTree {
   TreeView view;
   bool has_parts = false;  // whether a triangle can be in several leaves
 };
-// The tree of a Bvh.
+struct BvhArrays;
+
+// The inside of a Bvh.
 struct TreeOf {
   static TracedTree bvh(const Bvh& bvh);
+  static const BvhArrays* arrays(const Bvh& bvh) { return bvh.tree_.get(); }  // null: of an empty mesh
+  static const TreeView* ready(
+      const Bvh& bvh);  // what calls with one ray walk, until a refit; not of an empty mesh
+  static Bvh copy(const Bvh& bvh);
+  // As strike_triangles() in layout/refit.hpp.
+  static void strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept;
 };
 inline constexpr TreeView no_tree{nullptr, nullptr, empty_reference, empty_box};
 
@@ -29,6 +37,11 @@ struct Traversal {
   TreeView tree;
   TraversalChoice choice;
 };
+
+// The row for a call with one ray and default options; and with any. Null if these set more than test, grade and path,
+// or the test has no such row.
+const CallRow& default_row();
+const CallRow* usual_row(const TraceOptions& options);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);

@@ -38,6 +38,8 @@ class Geometry {
   // The bounds of all that can be hit. Hits may lie outside by a share of the largest coordinate of a ray's origin.
   virtual Box bounds() const = 0;
   virtual float slack() const { return 0.0f; }
+  // Its tree of triangles; null if it has none.
+  virtual const Bvh* triangles() const { return nullptr; }
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
@@ -54,6 +56,7 @@ class Geometry {
   std::atomic<bool> is_shared{false};
 };
 
+std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree);
 // From the spheres of its record and from what save() wrote. Throw as Scene::load.
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere> spheres, std::istream& file);
 std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream& file);

@@ -5,6 +5,14 @@
 
 namespace raylanes {
 
+// The place of an instance in its scene: added since the last update(); in the common tree; waiting until enough others
+// wait to build that again; apart from it.
+enum class Standing : std::uint8_t { added, common, waiting, apart };
+// The standing of an instance that has changed.
+constexpr Standing left(Standing standing) {
+  return standing == Standing::added ? Standing::added : Standing::apart;
+}
+
 struct Instance {
   std::uint32_t geometry;
   std::uint32_t mask;
@@ -12,6 +20,7 @@ struct Instance {
   double inverse[12];  // rows of four: to the part's space
   double doubt;  // by which share the inverse may be wrong; negative: nothing is hit, there is no inverse
   bool is_identity;
+  Standing standing = Standing::added;
 
   Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_);
 };

@@ -3,6 +3,7 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../queries/traced_tree.hpp"
@@ -47,38 +48,11 @@ void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* 
   trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 
-// Instances whose share is at most that, a band after the other: one ill-conditioned transform would pad the boxes of
-// all instances of its tree. A rotation's share is 2^-20; 2^-12 adds a box test for few rays.
-constexpr float largest_shares[] = {0x1p-12f, 0x1p-6f, std::numeric_limits<float>::max()};
-
-std::vector<TopLevel> tops_over(std::span<const InstanceBounds> all) {
-  std::vector<TopLevel> tops;
-  std::vector<Box> boxes(all.size());
-  float least = -1.0f;
-  for (const float most : largest_shares) {
-    TopLevel top;
-    float share = 0.0f;
-    bool has_any = false;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const InstanceBounds& bounds = all[i];
-      const bool is_in = bounds.share > least && bounds.share <= most && is_visited(bounds.box);
-      boxes[i] = is_in ? bounds.box : empty_box;
-      if (!is_in) continue;
-      has_any = true;
-      share = std::max(share, bounds.share);
-      top.rounded.share = std::max(top.rounded.share, bounds.rounded.share);
-      top.rounded.distance = std::max(top.rounded.distance, bounds.rounded.distance);
-    }
-    least = most;
-    if (!has_any) continue;
-    top.tree = build_box_tree("scene", boxes, {});
-    top.tree.slack = share;
-    tops.push_back(std::move(top));
-  }
-  return tops;
+// The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
+const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
+  const bool is_quick = scene.is_current && scene.tops.empty() && !QuietFloats::are_wanted();
+  return is_quick ? scene.seen_common(mask) : nullptr;
 }
-
-const SceneParts no_parts;
 
 }  // namespace
 
@@ -93,81 +67,43 @@ void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitVi
   trace_all(query, rays, HitSink<SceneHit>{hits}, options.threads);
 }
 
-Scene::Scene() : parts_(std::make_unique<SceneParts>()) {}
-const SceneParts& Scene::parts() const noexcept {
-  return parts_ ? *parts_ : no_parts;
+SceneHit Scene::closest(const Ray& ray) const {
+  const CommonTree* const tree = quick_tree(parts(), ~0u);
+  if (tree == nullptr) [[unlikely]]
+    return closest_by_options(ray, {}, ~0u);
+  return kernels_of(path_in_use()).traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
 }
-SceneParts& Scene::changed() {
-  if (!parts_) parts_ = std::make_unique<SceneParts>();
-  return *parts_;
-}
-Scene::Scene(const Scene& other) : parts_(std::make_unique<SceneParts>(other.parts())) {
-  for (const auto& geometry : parts_->geometries) geometry->is_shared = true;
-}
-Scene& Scene::operator=(const Scene& other) {
-  return *this = Scene(other);
-}
-Scene::~Scene() = default;
-Scene::Scene(Scene&&) noexcept = default;
-Scene& Scene::operator=(Scene&&) noexcept = default;
-
-std::size_t Scene::geometry_count() const noexcept {
-  return parts().geometries.size();
-}
-
-std::uint32_t Scene::place(std::uint32_t geometry, const Transform& transform, std::uint32_t mask) {
-  at("geometry", changed().geometries, geometry);
-  const std::uint32_t number = next_number("instances", changed().instances);
-  changed().instances.emplace_back(geometry, transform, mask);
-  changed().is_current = false;
-  return number;
-}
-void Scene::move(std::uint32_t instance, const Transform& transform) {
-  Instance& moved = at("instance", changed().instances, instance);
-  moved = Instance(moved.geometry, transform, moved.mask);
-  changed().is_current = false;
-}
-void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
-  at("instance", changed().instances, instance).mask = mask;
-}
-std::uint32_t Scene::geometry_of(std::uint32_t instance) const {
-  return at("instance", parts().instances, instance).geometry;
-}
-Transform Scene::transform_of(std::uint32_t instance) const {
-  return at("instance", parts().instances, instance).transform;
-}
-std::uint32_t Scene::mask_of(std::uint32_t instance) const {
-  return at("instance", parts().instances, instance).mask;
-}
-std::size_t Scene::instance_count() const noexcept {
-  return parts().instances.size();
-}
-
-void Scene::update() {
-  SceneParts& parts = changed();
-  std::vector<InstanceBounds> bounds;
-  bounds.reserve(parts.instances.size());
-  for (const Instance& instance : parts.instances) {
-    const Geometry& geometry = *parts.geometries[instance.geometry];
-    bounds.push_back(bounds_of(instance, geometry.bounds(), geometry.slack()));
-  }
-  parts.tops = tops_over(bounds);
-  parts.is_current = true;
-}
-
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
+  const CommonTree* const tree = quick_tree(parts(), mask);
+  if (tree == nullptr || options.test != TriangleTest::exact || usual_row(options) == nullptr)
+    return closest_by_options(ray, options, mask);
+  return kernels_of(checked_path(options.path))
+      .traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+}
+SceneHit Scene::closest_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
   require_after_in_scene(options, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
+  const QuietFloats quiet;
   const bool looks_behind = options.after.first != nullptr;
   const SceneHit last = looks_behind ? last_hit(options.after, 0) : SceneHit();
   SceneHit hit;
   trace_scene(query, {&ray, 1, &hit, nullptr, {}, looks_behind ? &last : nullptr});
   return hit;
 }
+bool Scene::occluded(const Ray& ray) const {
+  const CommonTree* const tree = quick_tree(parts(), ~0u);
+  return tree != nullptr ? default_row().any(*tree->view, ray) : occluded_by_options(ray, {}, ~0u);
+}
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
+  const CommonTree* const tree = quick_tree(parts(), mask);
+  const CallRow* const row = tree != nullptr ? usual_row(options) : nullptr;
+  return row != nullptr ? row->any(*tree->view, ray) : occluded_by_options(ray, options, mask);
+}
+bool Scene::occluded_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
   const SceneQuery query = checked_query(parts(), options, mask);
+  const QuietFloats quiet;
   std::uint8_t is_occluded = 0;
   trace_scene(query, {&ray, 1, nullptr, &is_occluded});
   return is_occluded != 0;
@@ -198,12 +134,26 @@ void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::
 Box Scene::bounds() const noexcept {
   Box all = empty_box;
   for (const TopLevel& top : parts().tops) extend(all, top.tree.bounds);
+  if (parts().traces_common)
+    for (const Member& member : parts().common->members)
+      if (!member.is_struck) extend(all, member.box);
   return all;
 }
 std::size_t Scene::bytes() const noexcept {
   std::size_t bytes = parts().instances.size() * sizeof(Instance);
   for (const TopLevel& top : parts().tops) bytes += top.tree.bytes();
-  return bytes;
+  return parts().common != nullptr ? bytes + parts().common->bytes() : bytes;
+}
+SceneReport Scene::report() const noexcept {
+  SceneReport report;
+  if (parts().common == nullptr) return report;
+  const CommonTree& common = *parts().common;
+  report.common_bytes = common.bytes();
+  if (!parts().traces_common) return report;
+  report.common_triangles = common.triangles - common.struck;
+  for (const Member& member : common.members)
+    if (member.instance != no_part && !member.is_struck) ++report.common_instances;
+  return report;
 }
 
 }  // namespace raylanes

@@ -5,9 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "../layout/reference.hpp"
-#include "geometry.hpp"
-#include "instance.hpp"
+#include "common_tree.hpp"
 
 namespace raylanes {
 
@@ -43,17 +41,31 @@ std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
 struct SceneParts {
   std::vector<std::shared_ptr<Geometry>> geometries;
   std::vector<Instance> instances;
-  // Small shares first. Each instance that can be hit is in one of them.
+  std::vector<bool> is_changed;        // of geometries: replaced or refitted since the last update
+  std::shared_ptr<CommonTree> common;  // of the last update; null: no instances have one
+  bool traces_common = false;          // whether it is in use
+  // Small shares first. Each instance that can be hit, and is not in a common tree in use, is in one of them.
   std::vector<TopLevel> tops;
-  bool is_current = true;  // whether tops are up to date
+  bool is_current = true;  // whether all that is up to date
+
+  // The common tree if rays with this mask are to be traced through it.
+  const CommonTree* seen_common(std::uint32_t of_mask) const {
+    return traces_common && (common->mask & of_mask) != 0 ? common.get() : nullptr;
+  }
 
   std::uint32_t add(std::shared_ptr<Geometry> geometry) {
     const std::uint32_t number = next_number("geometries", geometries);
+    is_changed.reserve(number + std::size_t{1});
     geometries.push_back(std::move(geometry));
+    is_changed.push_back(false);
     return number;
   }
   void replace(std::uint32_t number, std::shared_ptr<Geometry> geometry) {
     at("geometry", geometries, number) = std::move(geometry);
+    has_changed(number);
+  }
+  void has_changed(std::uint32_t geometry) {
+    is_changed[geometry] = true;
     is_current = false;
   }
 };

@@ -15,20 +15,25 @@ namespace {
 // are traced as streams or single rays. Measured.
 constexpr std::size_t min_packets = 4096;
 
-// Spreads the hits of one instance into hits of the scene, from the front. As words: a hit's two, the second of which
-// ends with the primitive, and one that names the instance and geometry.
-[[gnu::noinline]] void spread(const Hit* hits, std::size_t size, std::uint32_t geometry,
-                              std::uint32_t instance, SceneHit* all) {
+// Spreads the hits of a tree into hits of the scene, from the front. As words: a hit's two, the second of which ends
+// with the primitive, and one that names the geometry and the instance.
+[[gnu::noinline]] void spread(const Hit* hits, std::size_t size, const TriangleOwners& owners,
+                              SceneHit* all) {
   static_assert(sizeof(Hit) == 16 && offsetof(Hit, primitive) == 12 && sizeof(SceneHit) == 24 &&
-                offsetof(SceneHit, geometry) == 16 && offsetof(SceneHit, instance) == 20);
+                offsetof(SceneHit, geometry) == 16 && offsetof(SceneHit, instance) == 20 &&
+                offsetof(TriangleOwner, instance) == offsetof(TriangleOwner, geometry) + 4);
   using Word = std::uint64_t;
-  const Word of_hit = Word{instance} << 32 | geometry, of_miss = ~Word{0};
   const auto* from = reinterpret_cast<const std::byte*>(hits);
   auto* to = reinterpret_cast<std::byte*>(all);
   for (; size > 0; --size, from += sizeof(Hit), to += sizeof(SceneHit)) {
-    Word first, second;
+    Word first, second, of_this;
     std::memcpy(&first, from, sizeof first), std::memcpy(&second, from + 8, sizeof second);
-    const Word of_this = second >> 32 != no_primitive ? of_hit : of_miss;
+    const auto triangle = static_cast<std::uint32_t>(second >> 32);
+    const bool is_hit = triangle != no_primitive;
+    const TriangleOwner& owner = owners.of(is_hit ? triangle : 0);
+    std::memcpy(&of_this, &owner.geometry, sizeof of_this);
+    second -= is_hit ? Word{owner.first} << 32 : 0;
+    of_this = is_hit ? of_this : ~Word{0};
     std::memcpy(to, &first, sizeof first), std::memcpy(to + 8, &second, sizeof second);
     std::memcpy(to + 16, &of_this, sizeof of_this);
   }
@@ -40,12 +45,20 @@ class SceneTracer {
 
   void trace() {
     const std::vector<TopLevel>& tops = query_.scene.tops;
+    const CommonTree* const common = query_.scene.seen_common(query_.mask);
+    if (common != nullptr) {
+      trace_all(*common->geometry, common->numbers(), batch_.rays);
+      return visit_tops(true);
+    }
     if (tops.size() == 1 && refers_to_leaf(tops[0].tree.root)) return trace_only(tops[0].tree.order[0]);
     clear_answers(batch_);
-    for (const TopLevel& top : tops) visit_instances(top, &top != tops.data());
+    visit_tops(false);
   }
 
  private:
+  void visit_tops(bool has_answers) {
+    for (const TopLevel& top : query_.scene.tops) visit_instances(top, has_answers), has_answers = true;
+  }
   void visit_instances(const TopLevel& top, bool has_answers) {
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
     Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
@@ -76,59 +89,64 @@ class SceneTracer {
   }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
-  // Rays in the space of an instance.
-  GeometryBatch batch_of(std::uint32_t number, const Ray* rays, std::size_t size,
-                         const detail::RayNumbers& numbers) const {
-    GeometryBatch batch{rays, size, nullptr, nullptr, nullptr, query_.choice.counters};
-    batch.may_be_packets = size >= min_packets;
-    batch.numbers = numbers, batch.instance = number;
-    return batch;
-  }
-
-  // The primitives of an instance that rays skip: each number(k) of the caller's batch.
-  const std::uint32_t* skips_within(std::uint32_t instance, const detail::RayNumbers& numbers,
-                                    std::size_t size, std::uint32_t* skips) const {
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::size_t number = numbers[k];
-      skips[k] = query_.skip.instance(number) == instance ? query_.skip[number] : no_primitive;
-    }
-    return skips;
-  }
   bool skips() const { return query_.skip.first != nullptr; }
 
-  // All rays go to the only instance: its tree's root is as good as a top level. Its hits are written at the end of the
-  // memory for the scene's hits, and spread from the front: none is written over before it is read.
-  void trace_only(std::uint32_t number) const {
-    const Instance& instance = query_.scene.instances[number];
-    if (!is_seen(instance)) return clear_answers(batch_);
-    GeometryBatch part = batch_of(number, batch_.rays, batch_.size, batch_.numbers);
-    part.occluded = batch_.occluded;
-    std::optional<Scratch> last;
+  // Rays in the space of an instance.
+  GeometryBatch batch_of(const Ray* rays, std::size_t size, const detail::RayNumbers& numbers,
+                         std::uint32_t instance) const {
+    GeometryBatch batch{rays, size, nullptr, nullptr, nullptr, query_.choice.counters};
+    batch.numbers = numbers, batch.instance = instance;
+    return batch;
+  }
+  // How much memory set_options() takes.
+  std::size_t bytes_of_options(std::size_t size) const {
+    return (batch_.after != nullptr ? Scratch::bytes_of<Hit>(size) : 0) +
+           (skips() ? Scratch::bytes_of<std::uint32_t>(size) : 0);
+  }
+  // Sets what rays look behind and what they skip, in the numbers of a tree. Ray k of the part is picked[k] of the
+  // batch; null: ray k.
+  void set_options(GeometryBatch& part, const MemberNumbers& numbers, const std::uint32_t* picked,
+                   Scratch& scratch) const {
     if (batch_.after != nullptr) {
-      Hit* const after = last.emplace(Scratch::bytes_of<Hit>(batch_.size)).take<Hit>(batch_.size);
-      for (std::size_t k = 0; k < batch_.size; ++k) after[k] = after_within(number, batch_.after[k]);
+      Hit* const after = scratch.take<Hit>(part.size);
+      for (std::size_t k = 0; k < part.size; ++k)
+        after[k] = numbers.after(batch_.after[picked != nullptr ? picked[k] : k]);
       part.after = after;
     }
-    std::optional<Scratch> skipped;
-    if (skips()) {
-      skipped.emplace(Scratch::bytes_of<std::uint32_t>(batch_.size));
-      part.skip =
-          skips_within(number, batch_.numbers, batch_.size, skipped->take<std::uint32_t>(batch_.size));
+    if (!skips()) return;
+    auto* const skip = scratch.take<std::uint32_t>(part.size);
+    for (std::size_t k = 0; k < part.size; ++k) {
+      const std::size_t number = part.numbers[k];
+      skip[k] = numbers.of(query_.skip.instance(number), query_.skip[number]);
     }
+    part.skip = skip;
+  }
+
+  // All rays go to one tree, as its root is as good as a top level. Its hits are written at the end of the memory for
+  // the scene's hits, and spread from the front: none is written over before it is read.
+  void trace_all(const Geometry& geometry, const MemberNumbers& numbers, const Ray* rays) const {
+    GeometryBatch part = batch_of(rays, batch_.size, batch_.numbers, numbers.members[0].instance);
+    part.occluded = batch_.occluded;
+    Scratch scratch(bytes_of_options(batch_.size));
+    set_options(part, numbers, nullptr, scratch);
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
+    geometry.trace(query_, part);
+    if (places != nullptr) spread(part.hits, batch_.size, numbers.owners, batch_.hits);
+  }
+  void trace_only(std::uint32_t number) const {
+    const Instance& instance = query_.scene.instances[number];
+    if (!is_seen(instance)) return clear_answers(batch_);
+    const Geometry& geometry = *query_.scene.geometries[instance.geometry];
+    const OneMember only(number, instance.geometry);
+    if (instance.is_identity) return trace_all(geometry, only.numbers(), batch_.rays);
     Ray one;
+    Ray* mapped = &one;
     std::optional<Scratch> scratch;
-    if (!instance.is_identity) {
-      Ray* mapped = &one;
-      if (batch_.size > 1)
-        mapped = scratch.emplace(Scratch::bytes_of<Ray>(batch_.size)).take<Ray>(batch_.size);
-      query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
-      part.rays = mapped;
-    }
-    query_.scene.geometries[instance.geometry]->trace(query_, part);
-    if (places != nullptr) spread(part.hits, batch_.size, instance.geometry, number, batch_.hits);
+    if (batch_.size > 1) mapped = scratch.emplace(Scratch::bytes_of<Ray>(batch_.size)).take<Ray>(batch_.size);
+    query_.kernels.queries.map_rays(batch_.rays, nullptr, batch_.size, instance.inverse, mapped);
+    trace_all(geometry, only.numbers(), mapped);
   }
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
@@ -142,9 +160,7 @@ class SceneTracer {
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
     const Geometry& geometry = *query_.scene.geometries[instance.geometry];
-    Scratch scratch(Scratch::bytes_of<Ray>(count) +
-                    (batch_.after != nullptr ? 2 : 1) * Scratch::bytes_of<Hit>(count) +
-                    (skips() ? Scratch::bytes_of<std::uint32_t>(count) : 0));
+    Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count) + bytes_of_options(count));
     auto* const mapped = scratch.take<Ray>(count);
     if (instance.is_identity)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
@@ -152,7 +168,8 @@ class SceneTracer {
       query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
     detail::RayNumbers numbers = batch_.numbers;
     numbers.picked = rays;
-    GeometryBatch part = batch_of(number, mapped, count, numbers);
+    GeometryBatch part = batch_of(mapped, count, numbers, number);
+    part.may_be_packets = count >= min_packets;
     if (geometry.keeps_ends())
       part.tmax = leaf.tmax;
     else
@@ -161,32 +178,12 @@ class SceneTracer {
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
-    if (batch_.after != nullptr) {
-      Hit* const after = scratch.take<Hit>(count);
-      for (std::size_t k = 0; k < count; ++k) after[k] = after_within(number, batch_.after[rays[k]]);
-      part.after = after;
-    }
-    if (skips()) part.skip = skips_within(number, numbers, count, scratch.take<std::uint32_t>(count));
+    set_options(part, OneMember(number, instance.geometry).numbers(), rays, scratch);
     geometry.trace(query_, part);
     if (batch_.hits != nullptr)
       keep_hits(number, leaf, part);
     else
       keep_occluded(leaf, part);
-  }
-
-  // The hit of an instance behind which its own next hit comes, in the order of t, instance, primitive.
-  static Hit after_within(std::uint32_t number, const SceneHit& last) {
-    constexpr std::uint32_t behind_all = no_primitive - 1;
-    if (!(last.t < std::numeric_limits<float>::infinity())) return {};
-    if (!last || number < last.instance) return {last.t, 0, 0, behind_all};
-    if (number == last.instance) return {last.t, 0, 0, last.primitive};
-    return {before(last.t), 0, 0, behind_all};
-  }
-  // The number before t among the values that t may have: with subnormals flushed none lies between −2^-126 and 0.
-  static float before(float t) {
-    using Limits = std::numeric_limits<float>;
-    const volatile float subnormal = Limits::denorm_min();
-    return t == 0.0f && subnormal == 0.0f ? -Limits::min() : float_below(std::max(t, Limits::lowest()));
   }
 
   void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const GeometryBatch& part) const {

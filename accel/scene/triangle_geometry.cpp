@@ -15,6 +15,7 @@ struct TriangleGeometry : Geometry {
   explicit TriangleGeometry(std::shared_ptr<const Bvh> bvh) : tree(not_null(std::move(bvh))) {}
 
   Box bounds() const override { return tree->bounds(); }
+  const Bvh* triangles() const override { return tree.get(); }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
     const TreeView view = TreeOf::bvh(*tree).view;
     TraceBatch batch;
@@ -42,6 +43,9 @@ std::unique_ptr<Geometry> triangles_of(Bvh tree) {
 
 }  // namespace
 
+std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree) {
+  return std::make_unique<TriangleGeometry>(std::move(tree));
+}
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere>, std::istream& file) {
   return triangles_of(Bvh::load(file));
 }
@@ -50,13 +54,13 @@ std::uint32_t Scene::add(Bvh tree) {
   return changed().add(triangles_of(std::move(tree)));
 }
 std::uint32_t Scene::add(std::shared_ptr<const Bvh> tree) {
-  return changed().add(std::make_unique<TriangleGeometry>(std::move(tree)));
+  return changed().add(geometry_of_triangles(std::move(tree)));
 }
 void Scene::replace(std::uint32_t geometry, Bvh tree) {
   changed().replace(geometry, triangles_of(std::move(tree)));
 }
 void Scene::replace(std::uint32_t geometry, std::shared_ptr<const Bvh> tree) {
-  changed().replace(geometry, std::make_unique<TriangleGeometry>(std::move(tree)));
+  changed().replace(geometry, geometry_of_triangles(std::move(tree)));
 }
 void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
   auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", changed().geometries, geometry).get());
@@ -65,12 +69,10 @@ void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangl
   if (part->own == nullptr || part->is_shared)
     return replace(geometry, part->tree->refitted(vertices, triangles, threads));
   part->own->refit(vertices, triangles, threads);
-  changed().is_current = false;
+  changed().has_changed(geometry);
 }
 const Bvh* Scene::tree(std::uint32_t geometry) const& {
-  const auto* const part =
-      dynamic_cast<const TriangleGeometry*>(at("geometry", parts().geometries, geometry).get());
-  return part != nullptr ? part->tree.get() : nullptr;
+  return at("geometry", parts().geometries, geometry)->triangles();
 }
 
 }  // namespace raylanes

@@ -3,11 +3,26 @@
 #include "../batch/routing.hpp"
 #include "../layout/bvh_arrays.hpp"
 #include "../layout/cost.hpp"
+#include "../layout/refit.hpp"
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {
 TracedTree TreeOf::bvh(const Bvh& bvh) {
   return bvh.traced();
+}
+const TreeView* TreeOf::ready(const Bvh& bvh) {
+  return &bvh.tree_->ready;
+}
+Bvh TreeOf::copy(const Bvh& bvh) {
+  Bvh other;
+  if (!bvh.tree_) return other;
+  other.tree_ = std::make_unique<BvhArrays>(*bvh.tree_);
+  other.make_ready();
+  return other;
+}
+void TreeOf::strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept {
+  strike_triangles(*bvh.tree_, box, first, end);
+  bvh.make_ready();
 }
 
 Bvh::Bvh() noexcept = default;

@@ -9,6 +9,7 @@
 #include "../layout/cost.hpp"
 #include "../layout/refit.hpp"
 #include "../mesh/valid_mesh.hpp"
+#include "../queries/traced_tree.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,9 +47,8 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
 
 Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
   if (must_build(vertices, triangles, threads)) return built_again(vertices, triangles, threads);
-  Bvh other;
+  Bvh other = TreeOf::copy(*this);
   if (!tree_) return other;
-  other.tree_ = std::make_unique<BvhArrays>(*tree_);
   refit_tree(*other.tree_, vertices, triangles, threads);
   other.make_ready();
   return other;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include <raylanes/scene_hit.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 
@@ -13,6 +14,21 @@
 #include "tree_view.hpp"
 
 namespace raylanes {
+
+// The instances that own the triangles of a tree over several meshes. Each of them has slots of 2^shift numbers to
+// itself.
+struct TriangleOwner {
+  std::uint32_t first;  // of its triangles
+  std::uint32_t geometry, instance;
+};
+struct TriangleOwners {
+  const TriangleOwner* slots;
+  unsigned shift;  // at most 32
+
+  [[gnu::always_inline]] const TriangleOwner& of(std::uint64_t triangle) const {
+    return slots[triangle >> shift];
+  }
+};
 
 // The point that rays of a packet share: the begin of the first one, bit for bit; for `any` about where all end; for
 // `closest` none. `any` and `closest` trace the rest as single rays and as rays that share no point.
@@ -80,6 +96,8 @@ struct TraversalKernels {
   // The triangle that a ray hits nearest by the exact test, as leaves number it: eight times the block, plus the lane;
   // all bits set: none. Null where rays are counted.
   std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray);
+  // CallRow::closest of the exact test for a tree with owners. Null where rays are counted.
+  SceneHit (*closest_in_scene)(const TreeView& tree, const TriangleOwners& owners, const Ray& ray);
 
   // For streams or packets of so many rays, whatever they look for.
   std::size_t scratch_bytes(TraversalMode of, std::size_t rays) const {

@@ -13,6 +13,7 @@
 #include <raylanes/builders.hpp>
 #include <raylanes/progress.hpp>
 #include <raylanes/rays.hpp>
+#include <raylanes/scene_hit.hpp>
 #include <raylanes/traversal.hpp>
 
 namespace raylanes {
@@ -30,9 +31,6 @@ struct BoundedBuildOptions {
   /// errors of your test. From 0 to 1.
   float slack = 0x1p-20f;
 };
-
-/// The index of no geometry and of no instance.
-inline constexpr std::uint32_t no_part = 0xffffffffu;
 
 namespace detail {
 

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
-#include <limits>
 #include <memory>
 #include <span>
 
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/bvh.hpp>
+#include <raylanes/scene_hit.hpp>
 #include <raylanes/sphere_tree.hpp>
 
 namespace raylanes {
@@ -23,26 +23,19 @@ struct Transform {
   float row[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 };
 
-/// A hit in a scene: a Hit, and what was hit. A miss has no_primitive and no_part; a default-constructed one is a miss.
-struct SceneHit {
-  float t = std::numeric_limits<float>::infinity();
-  float u = 0;
-  float v = 0;
-  std::uint32_t primitive = no_primitive;  ///< index within its geometry
-  std::uint32_t geometry = no_part;
-  std::uint32_t instance = no_part;
-
-  /// Returns whether this is a hit.
-  explicit operator bool() const { return primitive != no_primitive; }
-};
-static_assert(sizeof(SceneHit) == 24);
-
 /// A view of hits in scenes to write, as HitView is of hits in trees.
 using SceneHitView = HitRecords<SceneHit>;
 
 /// A function that rejects hits in scenes, as HitFilter does in trees.
 using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const SceneHit> hits,
                                           std::span<std::uint8_t> rejected)>;
+
+/// How a scene is traced, as Scene::report() says.
+struct SceneReport {
+  std::size_t common_instances = 0;  ///< instances in the common tree
+  std::size_t common_triangles = 0;  ///< their triangles
+  std::size_t common_bytes = 0;      ///< the memory of the common tree, besides the trees of geometries
+};
 
 /// Geometries and instances that place them. Both are numbered from 0, in the order in which they are added.
 /// Call update() after any change, before the next query. Many threads may query one object at the same time, but not
@@ -62,13 +55,29 @@ using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std
 /// - instances whose transform is singular to doubles: |determinant| <= 2^-48 times the sum of its terms' sizes;
 /// - instances that reach beyond the largest float.
 ///
-/// A ray misses an instance if its origin or direction is not finite there, or its direction is below 2^-126.
+/// A ray misses an instance if its origin or direction is not finite there. It also misses an instance if its direction
+/// is below 2^-126 there, unless the instance's transform is the identity.
+///
+/// Meshes that stand where they were made are traced as one tree, as fast as one Bvh of them. The call update() builds
+/// this common tree over the triangles of the instances whose transform is the identity and whose mask is the most
+/// frequent one. Results do not depend on it. The rules keep update() short in scenes that change:
+/// - An instance that changes after its first update(), by move(), set_mask(), refit() or replace(), leaves the common
+///   tree at the next update(), for good. Its triangles are struck out of the tree.
+/// - A new instance is traced by itself until a quarter of the common tree's triangles is new or has left. Then
+///   update() builds the tree again.
+/// - set_moving() keeps an instance out, or lets it in again.
+/// - A tree of one instance is that of its geometry. So an instance alone in a scene costs nothing, nor does the only
+///   one that may be in the tree, if its box has a quarter of the scene's surface.
+///
+/// The common tree takes the memory of a Bvh of its triangles, besides the trees of geometries. Its build takes 48
+/// bytes a triangle more. It is built by the builder of the largest geometry in it.
 class Scene {
  public:
   /// Makes an empty scene.
   Scene();
-  /// Copies a scene. Both share their geometries, so a copy takes the memory of bytes(). A refit in one of them makes a
-  /// tree of its own, and changes nothing in the other. Many threads may copy one object at the same time.
+  /// Copies a scene. Both share their geometries and the common tree, so a copy takes the memory of bytes() without
+  /// SceneReport::common_bytes. A change in one of them makes a tree of its own, and changes nothing in the other. Many
+  /// threads may copy one object at the same time.
   Scene(const Scene&);
   /// Becomes a copy, as by the constructor.
   Scene& operator=(const Scene&);
@@ -123,8 +132,13 @@ class Scene {
   std::uint32_t place(std::uint32_t geometry, const Transform& transform = {}, std::uint32_t mask = ~0u);
   /// Gives an instance another transform. Throws std::out_of_range if there is no such instance.
   void move(std::uint32_t instance, const Transform& transform);
-  /// Gives an instance another mask, at once, without update(). Throws std::out_of_range if there is no such instance.
+  /// Gives an instance another mask, at once, without update(). If the instance is in the common tree, rays go through
+  /// each instance by itself until the next update(), which is slower. The first such call then takes 0.1 µs for each
+  /// instance. Throws std::out_of_range if there is no such instance.
   void set_mask(std::uint32_t instance, std::uint32_t mask);
+  /// Says that an instance will move, or change otherwise, so that it is not in the common tree from the next update()
+  /// on; or, with false, that it will no longer. Throws as move() does.
+  void set_moving(std::uint32_t instance, bool moving = true);
   /// Returns the geometry of an instance. Throws as move() does.
   std::uint32_t geometry_of(std::uint32_t instance) const;
   /// Returns the transform of an instance. Throws as move() does.
@@ -133,8 +147,13 @@ class Scene {
   std::uint32_t mask_of(std::uint32_t instance) const;
   std::size_t instance_count() const noexcept;  ///< the number of instances
 
-  /// Builds the tree over the instances again, in about 0.1 µs for each. Geometries only give their bounds.
-  void update();
+  /// Makes the scene ready for queries. Builds the tree over the instances again, in about 0.1 µs for each. Builds the
+  /// common tree where the rules of the class say so, in the time of a Bvh of its triangles. An instance of 1,000
+  /// triangles is struck out of the common tree in less than a millisecond. If a copy of the scene has that tree, too,
+  /// it is copied first. `threads` is as in TraceOptions, for the common tree.
+  /// Throws std::invalid_argument if the thread count is negative. Strong exception guarantee: if this throws, the
+  /// scene is unchanged.
+  void update(int threads = 1);
 
   // Queries: options apply to the triangles within geometries. TraceOptions::skip and after take hits in scenes: in
   // closest(), after[i] is the hit behind which ray i looks, in the order of t, then instance, then primitive. The
@@ -146,9 +165,13 @@ class Scene {
 
   /// Returns the nearest hit of the ray among instances whose mask has a bit in common with `mask`, or a miss.
   /// Throws as TriangleTree::closest() does, and std::logic_error if the scene was changed without update().
-  SceneHit closest(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
+  SceneHit closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask = ~0u) const;
+  /// Returns the nearest hit of the ray among all instances, by TriangleTest::exact on the active path.
+  SceneHit closest(const Ray& ray) const;
   /// Returns whether the ray's segment hits such an instance. Throws as closest() does.
-  bool occluded(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
+  bool occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask = ~0u) const;
+  /// Returns whether the ray's segment hits any instance, by TriangleTest::exact on the active path.
+  bool occluded(const Ray& ray) const;
   /// Finds the nearest hit of each ray: hits[i] belongs to ray i. Inactive rays leave their hit unchanged.
   /// rays and hits must not overlap. Throws what closest(ray) throws, and std::invalid_argument, before writing
   /// anything, if there are not as many hits as rays. std::bad_alloc may leave some hits written.
@@ -216,16 +239,26 @@ class Scene {
   /// has the format. Throws std::invalid_argument if a geometry has primitives of your own, which no file can hold, and
   /// std::runtime_error if the stream does not take it.
   void save(std::ostream& file) const;
-  /// Returns the scene that save() wrote, as after update(); trees of spheres are built again. Throws as Bvh::load().
+  /// Returns the scene that save() wrote, as after update(), which builds the common tree; trees of spheres are built
+  /// again. The file does not say what set_moving() said. Throws as Bvh::load().
   static Scene load(std::istream& file);
 
   /// Returns a box around all that can be hit, slightly enlarged, at the last update(); lo = +infinity and
   /// hi = −infinity for an empty scene.
   Box bounds() const noexcept;
-  /// Returns the bytes of the instances and the tree over them, without geometries.
+  /// Returns the bytes of the instances, the tree over them and the common tree, without geometries.
   std::size_t bytes() const noexcept;
+  /// Returns what the common tree holds. While it is out of use after set_mask(), it has no instances.
+  SceneReport report() const noexcept;
 
  private:
+  // A ray, with any options.
+  [[gnu::cold, gnu::visibility("hidden")]] SceneHit closest_by_options(const Ray& ray,
+                                                                       const TraceOptions& options,
+                                                                       std::uint32_t mask) const;
+  [[gnu::cold, gnu::visibility("hidden")]] bool occluded_by_options(const Ray& ray,
+                                                                    const TraceOptions& options,
+                                                                    std::uint32_t mask) const;
   void filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
                         const TraceOptions& options, std::uint32_t mask) const;
   void filtered_closest(const RayArrays& rays, SceneHitView hits, const SceneHitFilter& filter,

@@ -48,6 +48,7 @@ constexpr TraversalKernels all_modes(Put put) {
   if constexpr (std::is_same_v<Counters, NoCounters>) {
     kernels.call = rows_of<CallKernels>(TreeTests(), CallRows());
     kernels.nearest_triangle = nearest_triangle;
+    kernels.closest_in_scene = closest_in_scene;
   }
   return kernels;
 }

@@ -78,6 +78,15 @@ py::tuple corners_of(const Box& box) {
   return py::make_tuple(box.lo, box.hi);
 }
 
+py::dict report_of_scene(const SharedScene& shared) {
+  const SceneReport report = shared.state->report();
+  py::dict all;
+  all["common_instances"] = to_python(report.common_instances);
+  all["common_triangles"] = to_python(report.common_triangles);
+  all["common_bytes"] = to_python(report.common_bytes);
+  return all;
+}
+
 template <class Shared>
 auto bind_shared(py::module_& module, const char* name) {
   return py::class_<Shared>(module, name, py::custom_type_setup(check_new_objects))
@@ -117,7 +126,9 @@ void bind_scenes(py::module_& module) {
       .def("place", place)
       .def("move", move)
       .def("set_mask", set_mask)
+      .def("set_moving", set_moving)
       .def("update", update)
+      .def("report", report_of_scene)
       .def("instances", instances_of)
       .def("geometry_count",
            [](const SharedScene& shared) { return to_python(shared.state->geometry_count()); })

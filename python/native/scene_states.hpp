@@ -132,8 +132,25 @@ inline void set_mask(SharedScene& shared, const py::array& instances, const py::
   });
 }
 
-inline void update(SharedScene& shared) {
-  change(shared, is_quick(shared.state->instance_count()), [](Scene& scene) { scene.update(); });
+inline void set_moving(SharedScene& shared, const py::array& instances, bool moving) {
+  const auto of_instances = records_of<std::uint32_t>(instances);
+  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+    require_instances(scene, of_instances);
+    for (std::size_t i = 0; i < of_instances.count; ++i) scene.set_moving(of_instances[i], moving);
+  });
+}
+
+// Whether an update ends so soon, even if it builds a tree over all triangles.
+inline bool is_quick_update(const Scene& scene) {
+  constexpr std::size_t most = 1 << 19;
+  std::size_t bytes = 0;
+  for (std::uint32_t i = 0; i < scene.geometry_count() && bytes <= most; ++i)
+    if (const Bvh* const tree = scene.tree(i)) bytes += tree->bytes();
+  return is_quick(scene.instance_count()) && (bytes <= most || is_only_thread());
+}
+inline void update(SharedScene& shared, int threads) {
+  threads = usable_threads(threads);
+  change(shared, is_quick_update(*shared.state), [&](Scene& scene) { scene.update(threads); });
 }
 
 }  // namespace raylanes::python

@@ -95,6 +95,8 @@ def scenes_calls():
     yield changed.place, (0, np.eye(4)), {"mask": 1}
     yield changed.move, (0, np.eye(4)), {}
     yield changed.set_mask, (0, 1), {}
+    yield changed.set_moving, (0,), {}
+    yield changed.update, (), {"threads": 1}
     for query in (scene.geometry_of, scene.mask_of, scene.transform_of):
         yield query, (0,), {}
     traced_and_filtered = {**traced, "filter": lambda indices, hits: np.zeros(len(hits), bool)}

@@ -168,6 +168,10 @@ TEST(Trapped, scenes_and_trees_of_primitives_are_asked) {
     scene.update();
     scene.closest(rays, hits, {.path = path, .threads = threads});
     scene.occluded(rays, occluded, {.path = path, .threads = threads});
+    for (const Ray& ray : rays) {
+      scene.closest(ray, {.path = path});
+      scene.occluded(ray, {.path = path});
+    }
     SphereTree(spheres).closest(rays, own, {.path = path, .threads = threads});
   });
 }

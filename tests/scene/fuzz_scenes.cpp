@@ -204,6 +204,30 @@ Scene copied(Scene& scene, const Mesh& mesh) {
   return copy;
 }
 
+// Makes instances leave the common tree and join it. Masks may change at last, without an update.
+void change_some(Bytes& bytes, Coordinates& coordinates, Scene& scene, const Mesh (&meshes)[2]) {
+  for (std::size_t steps = 1 + bytes.below(8); steps > 0; --steps) {
+    const auto instance = static_cast<std::uint32_t>(bytes.below(scene.instance_count()));
+    const auto geometry = static_cast<std::uint32_t>(bytes.below(2));
+    const std::size_t kind = bytes.below(6);
+    if (kind == 0) scene.move(instance, any_transform(bytes, coordinates));
+    if (kind == 1) scene.set_moving(instance, bytes.chance(128));
+    if (kind == 2) scene.replace(geometry, Bvh(meshes[geometry]));
+    if (kind == 3) scene.place(geometry);
+    if (kind == 4) scene.refit(geometry, meshes[geometry].vertices, meshes[geometry].triangles);
+    if (kind < 4 || bytes.chance(128)) scene.update();
+    if (kind == 5) scene.set_mask(instance, bytes.chance(128) ? ~0u : bytes.byte());
+  }
+  const Scene copy = scene;
+  if (bytes.chance(128)) scene.update();
+  if (bytes.chance(64)) scene = copy;
+  try {
+    scene.closest(Ray());
+  } catch (const std::logic_error&) {
+    scene.update();
+  }
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -218,8 +242,10 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   Coordinates coordinates(bytes);
   const std::size_t instances = bytes.below(bytes.chance(64) ? 60 : 4);
   for (std::size_t i = 0; i < instances; ++i)
-    scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates), bytes.byte());
+    scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates),
+                bytes.chance(128) ? ~0u : bytes.byte());
   scene.update();
+  if (instances > 0 && bytes.chance(128)) change_some(bytes, coordinates, scene, meshes);
   if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));
   if (bytes.chance(64)) scene = copied(scene, meshes[0]);
   const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),

@@ -223,7 +223,8 @@ def native_calls_of_scenes(tree):
         return scene
 
     def after_changes(scene):
-        scene.move(masks, places), scene.set_mask(masks, masks), scene.replace(1, tree), scene.update()
+        scene.move(masks, places), scene.set_mask(masks, masks), scene.replace(1, tree), scene.update(1)
+        scene.set_moving(masks, False), scene.update(1), scene.report()
         scene.instances(masks, records)
         return scene.to_bytes(), scene.bounds(), scene.nbytes(), scene.instance_count(), records.tobytes()
 

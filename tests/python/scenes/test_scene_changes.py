@@ -132,6 +132,24 @@ def test_what_is_refused_changes_nothing():
         mixed.refit(0, cube_vertices, cube_faces)
 
 
+def test_meshes_that_stand_have_a_tree_in_common():
+    scene = raylanes.Scene()
+    for _ in range(8):
+        scene.place(scene.add(cube()))
+    scene.update(threads=1)
+    before, report = scene.closest(rays).tobytes(), scene.report()
+    assert report["common_instances"] == 8 and report["common_triangles"] == 8 * len(cube_faces)
+    assert 1000 < report["common_bytes"] < scene.nbytes
+    scene.set_moving([[2], [5]])
+    scene.update()
+    assert scene.report()["common_instances"] == 6 and scene.closest(rays).tobytes() == before
+    scene.set_moving(range(8))
+    scene.update()
+    assert set(scene.report().values()) == {0} and scene.closest(rays).tobytes() == before
+    with pytest.raises(IndexError, match="there is no instance 8"):
+        scene.set_moving([0, 8], False)
+
+
 def test_answers_go_where_they_are_wanted():
     scene, few = scene_of_cubes(), rays[:300]
     for ask, of, dtype in [(scene.closest, few, raylanes.scene_hit_dtype), (scene.occluded, few, bool),

@@ -1,0 +1,53 @@
+#include "common_tree.hpp"
+
+#include <limits>
+
+#include "../queries/traced_tree.hpp"
+
+namespace raylanes {
+namespace {
+
+// The number before t among the values that t may have: with subnormals flushed none lies between −2^-126 and 0.
+float before(float t) {
+  using Limits = std::numeric_limits<float>;
+  const volatile float subnormal = Limits::denorm_min();
+  return t == 0.0f && subnormal == 0.0f ? -Limits::min() : float_below(std::max(t, Limits::lowest()));
+}
+
+}  // namespace
+
+std::uint32_t MemberNumbers::of(std::uint32_t instance, std::uint32_t primitive) const {
+  const Member* const member = &from(instance);
+  const bool has_it =
+      instance != no_part && member->instance == instance && primitive < member[1].first - member->first;
+  return has_it ? member->first + primitive : no_primitive;
+}
+
+Hit MemberNumbers::after(const SceneHit& last) const {
+  constexpr std::uint32_t behind_all = no_primitive - 1;
+  if (!(last.t < std::numeric_limits<float>::infinity())) return {};
+  if (!last) return {last.t, 0, 0, behind_all};
+  const Member* const member = &from(last.instance);
+  std::uint32_t behind = member->first;
+  if (member->instance == last.instance && last.instance != no_part)
+    behind += std::min(last.primitive, member[1].first - member->first - 1) + 1;
+  return behind == 0 ? Hit{before(last.t), 0, 0, behind_all} : Hit{last.t, 0, 0, behind - 1};
+}
+
+CommonTree::CommonTree(const CommonTree& other)
+    : own(std::make_shared<Bvh>(TreeOf::copy(*other.own))),
+      members(other.members),
+      slots(other.slots),
+      shift(other.shift),
+      mask(other.mask),
+      triangles(other.triangles),
+      struck(other.struck) {
+  geometry = geometry_of_triangles(own), view = TreeOf::ready(*own);
+}
+
+std::size_t CommonTree::bytes() const {
+  return members.size() * sizeof(Member) + slots.size() * sizeof(TriangleOwner) +
+         (own != nullptr ? own->bytes() : 0);
+}
+
+}  // namespace raylanes
