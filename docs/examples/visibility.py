@@ -25,7 +25,8 @@ middles = corners.mean(axis=1)
 def seen_from(watcher):
     """Whether the middle of each triangle is visible."""
     towards = np.sum(normals * (watcher - middles), axis=1) > 0
-    # A segment leaves each hill that hides its end. Exits alone count, so no offset is needed.
+    # A segment leaves each hill that hides its end, and its own ground is an entry. So exits alone count, and no offset
+    # is needed. A ray that begins at the ground would ask for facing="front".
     return towards & ~tree.occluded_from(watcher, middles, facing="back")
 
 

@@ -20,6 +20,7 @@
 #include <raylanes/scene.hpp>
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
+#include <raylanes/stretches.hpp>
 #include <raylanes/surface.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/tree.hpp>

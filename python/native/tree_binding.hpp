@@ -1,6 +1,7 @@
 // Trees and their queries. Arrays are looked at with the GIL, the library works without.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -208,8 +209,9 @@ py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
-  auto found = query(shared, options, progress, from.count,
-                     [&](const TreeOf<T>& tree, const auto& heard) { return (tree.*list)(from, heard); });
+  auto found = query(shared, options, progress, from.count, [&](const TreeOf<T>& tree, const auto& heard) {
+    return std::invoke(list, tree, from, heard);
+  });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 

@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <raylanes/stretches.hpp>
+
 #include "mesh_holes.hpp"
 #include "module.hpp"
 #include "tree_states.hpp"
@@ -34,6 +36,7 @@ void bind_queries(py::module_& module, const char* name) {
   constexpr RayLists<HitOf<T>> (TreeOf<T>::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
   constexpr RayLists<CrossingOf> (TreeOf<T>::*passages)(Rays, const ListOptions&) const =
       &TreeOf<T>::crossings;
+  constexpr RayLists<StretchRecord<T>> (*within)(const TreeOf<T>&, Rays, const ListOptions&) = &stretches;
   py::class_<SharedTree<T>>(module, name)
       .def("closest", closest<T>)
       .def("closest_crossing", closest_crossing<T>)
@@ -42,6 +45,7 @@ void bind_queries(py::module_& module, const char* name) {
       .def("corners", corners<T>)
       .def("all_hits", lists<T, hits>)
       .def("crossings", lists<T, passages>)
+      .def("stretches", lists<T, within>)
       .def("count_crossings", count_crossings<T>)
       .def("locate", locate<T>)
       .def("winding_numbers", winding_numbers<T>)

@@ -15,14 +15,15 @@ NumPy, no thread may write to an array while a call reads it.
 """
 
 from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
-                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, faces_of as _faces_of, hit_dtype,
-                      no_part, no_primitive, ray_dtype, rays, scene_hit_dtype, stand_ins as _stand_ins)
+                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, double_stretch_dtype,
+                      faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays, scene_hit_dtype,
+                      stand_ins as _stand_ins, stretch_dtype)
 from ._meshes import parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count
 from ._warn import MeshWarning
-from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, Lists
+from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, Lists, Stretch, Stretches
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt
 from .scene import Scene
@@ -32,10 +33,11 @@ from .tree import Bvh, KdTree
 
 __all__ = [
     "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists",
-    "MeshWarning", "ON", "OUTSIDE", "Path", "Scene", "SceneHit", "SceneHits", "SphereTree", "active_path",
-    "closed_report", "closest_point_dtype", "count_dtype", "crossing_dtype", "double_closest_point_dtype",
-    "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype", "hit_dtype", "no_part", "no_primitive",
-    "paths", "ray_dtype", "rays", "reciprocal", "rsqrt", "scene_hit_dtype", "sqrt", "use_path",
+    "MeshWarning", "ON", "OUTSIDE", "Path", "Scene", "SceneHit", "SceneHits", "SphereTree", "Stretch", "Stretches",
+    "active_path", "closed_report", "closest_point_dtype", "count_dtype", "crossing_dtype",
+    "double_closest_point_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype",
+    "double_stretch_dtype", "hit_dtype", "no_part", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal",
+    "rsqrt", "scene_hit_dtype", "sqrt", "stretch_dtype", "use_path",
 ]
 
 

@@ -16,6 +16,8 @@ ray_dtype: np.dtype[np.void]
 hit_dtype: np.dtype[np.void]
 scene_hit_dtype: np.dtype[np.void]
 crossing_dtype: np.dtype[np.void]
+stretch_dtype: np.dtype[np.void]
+double_stretch_dtype: np.dtype[np.void]
 double_ray_dtype: np.dtype[np.void]
 double_hit_dtype: np.dtype[np.void]
 double_closest_point_dtype: np.dtype[np.void]
@@ -50,7 +52,7 @@ _KdBuilder = Literal["midpoint", "sah"]
 _Accuracy = Literal["correctly_rounded", "1ulp", "within_1_ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4",
                     "within_2^-44", "within_2^-22", "within_2^-16", "within_2^-11", "within_2^-4"]
 _Self = TypeVar("_Self", bound=_Stored)
-_Items = TypeVar("_Items", Hits, Crossings)
+_Items = TypeVar("_Items", Hits, Crossings, Stretches)
 
 class _WithFaces(Protocol):
     @property
@@ -177,6 +179,30 @@ class Crossing(np.void):
     def side(self) -> np.int32: ...
     def positions(self, rays: ArrayLike) -> _Floats: ...
 
+class Stretches(np.ndarray[Any, np.dtype[np.void]]):
+    @property
+    def entry(self) -> _Floats: ...
+    @property
+    def exit(self) -> _Floats: ...
+    @property
+    def entered_by(self) -> _Ids: ...
+    @property
+    def left_by(self) -> _Ids: ...
+    @property
+    def winding(self) -> NDArray[np.int32]: ...
+
+class Stretch(np.void):
+    @property
+    def entry(self) -> _Float: ...
+    @property
+    def exit(self) -> _Float: ...
+    @property
+    def entered_by(self) -> np.uint32: ...
+    @property
+    def left_by(self) -> np.uint32: ...
+    @property
+    def winding(self) -> np.int32: ...
+
 class ClosestPoints(_OnTriangle, _PlaceArray):
     @property
     def distance_squared(self) -> _Doubles: ...
@@ -236,6 +262,8 @@ class _Tree(_Stored):
                  active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> Lists[Hits]: ...
     def crossings(self, rays: ArrayLike, *, max_count: int | None = ..., facing: _Facing = ..., skip: _Skip = ...,
                   active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> Lists[Crossings]: ...
+    def stretches(self, rays: ArrayLike, *, max_count: int | None = ..., skip: _Skip = ..., active: _Mask = ...,
+                  threads: int = ..., progress: _Progress = ...) -> Lists[Stretches]: ...
     def count_crossings(self, rays: ArrayLike, *, facing: _Facing = ..., skip: _Skip = ..., out: Any = ...,
                         active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> _Records: ...
     def locate(self, points: ArrayLike, *, rule: _Rule = ..., out: Any = ..., active: _Mask = ...,

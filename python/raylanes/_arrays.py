@@ -34,6 +34,14 @@ double_hit_dtype = np.dtype({"names": ["t", "u", "v", "primitive"], "formats": [
 double_crossing_dtype = np.dtype([("t", "<f8"), ("primitive", "<u4"), ("side", "<i4")])
 """A passage of a ray of float64; otherwise as crossing_dtype."""
 
+stretch_dtype = np.dtype([("entry", "<f4"), ("exit", "<f4"), ("entered_by", "<u4"), ("left_by", "<u4"),
+                          ("winding", "<i4")])
+"""A stretch of a ray within a solid; no_primitive where the ray itself begins or ends."""
+
+double_stretch_dtype = np.dtype({"names": stretch_dtype.names, "formats": ["<f8", "<f8", "<u4", "<u4", "<i4"],
+                                 "itemsize": 32})
+"""A stretch of a ray of float64; otherwise as stretch_dtype."""
+
 count_dtype = np.dtype([("crossings", "<u4"), ("winding", "<i4")])
 """How many crossings, and the sum of their sides."""
 
@@ -53,12 +61,13 @@ class Numbers(NamedTuple):
     ray: np.dtype
     hit: np.dtype
     crossing: np.dtype
+    stretch: np.dtype
     closest_point: np.dtype
 
 
-FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, closest_point_dtype)
+FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, stretch_dtype, closest_point_dtype)
 DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
-                  double_closest_point_dtype)
+                  double_stretch_dtype, double_closest_point_dtype)
 SCENES = FLOATS._replace(hit=scene_hit_dtype)
 
 

@@ -6,7 +6,7 @@ from ._answer import Answer
 from ._arrays import count_dtype, packed, ray_rows
 from ._scalars import count, function, threads_of, word
 from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped
-from .hits import Crossings, Hits, Lists
+from .hits import Crossings, Hits, Lists, Stretches
 from .paths import chosen
 
 
@@ -238,6 +238,35 @@ class RayQueries:
         array([-1], dtype=int32)
         """
         return _lists(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
+                      active, threads, progress, skip)
+
+    def stretches(self, rays, *, max_count=None, skip=None, active=None, threads=0, progress=None):
+        """Find where each ray runs within solids: each entry with its exit, and the winding number between them.
+
+        Lengths are right for rays through edges and corners, too: the sum of (exit - entry) * winding is that of exact
+        arithmetic, but for the rounding of t. Crossings at one t count together, so nothing ends where a ray touches an
+        edge, or passes into a solid that shares a face. A ray may begin within a solid or on a surface. Stretches whose
+        ends round to one number are left out.
+
+        Parameters
+        ----------
+        rays, max_count, skip, active, threads, progress
+            As in all_hits().
+
+        Returns
+        -------
+        Lists
+            The Stretches of each ray, in order.
+
+        Examples
+        --------
+        >>> solid = raylanes.Bvh([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]],
+        ...                      [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+        >>> within = solid.stretches(raylanes.rays([[1, 1, 9]], [0, 0, -1]))[0]
+        >>> within.entry, within.exit
+        (array([7.]), array([9.]))
+        """
+        return _lists(self._tree.stretches, Stretches, self._numbers, self._numbers.stretch, rays, max_count, "any",
                       active, threads, progress, skip)
 
     def count_crossings(self, rays, *, facing="any", skip=None, out=None, active=None, threads=0, progress=None):

@@ -180,6 +180,14 @@ class _CrossingNumbers(_OnRay):
     side = field_of("side", "int32: 1 along the triangle's normal, out of a solid; -1 against it, into a solid")
 
 
+class _StretchNumbers:
+    entry = field_of("entry", "real: where it begins, in lengths of the direction")
+    exit = field_of("exit", "real: where it ends, behind entry")
+    entered_by = field_of("entered_by", "uint32: the triangle crossed at entry; no_primitive where the ray begins")
+    left_by = field_of("left_by", "uint32: the triangle crossed at exit; no_primitive where the ray ends")
+    winding = field_of("winding", "int32: the winding number along it; 1 in a closed mesh whose normals point out")
+
+
 class _ClosestPointNumbers(_OnTriangle):
     distance_squared = field_of("distance_squared", "float64: inf if there is no point")
     point = field_of("point", "real, shape (..., 3): rounded once; zeros if there is no point")
@@ -204,6 +212,10 @@ class Crossing(_CrossingNumbers, np.void):
     """A single crossing: crossings[i], with the properties and methods of Crossings."""
 
 
+class Stretch(_StretchNumbers, np.void):
+    """A single stretch: stretches[i], with the properties of Stretches."""
+
+
 class ClosestPoint(_ClosestPointNumbers, np.void):
     """A single closest point: points[i], with the properties of ClosestPoints."""
 
@@ -224,6 +236,12 @@ class Crossings(_CrossingNumbers, Records):
     _record = Crossing
 
 
+class Stretches(_StretchNumbers, Records):
+    """An array of stretch_dtype or double_stretch_dtype; stretches[i] is a Stretch."""
+
+    _record = Stretch
+
+
 class ClosestPoints(_ClosestPointNumbers, Records):
     """An array of closest_point_dtype or double_closest_point_dtype; points[i] is a ClosestPoint."""
 
@@ -237,7 +255,7 @@ class Lists:
     ----------
     offsets : ndarray of int64, shape (n + 1,)
         The index of the first item of each ray, and the end of the last.
-    items : Hits or Crossings, shape (h,)
+    items : Hits, Crossings or Stretches, shape (h,)
         The items of all rays, ray by ray.
     """
 
@@ -269,7 +287,7 @@ class Lists:
         return np.repeat(np.arange(len(self)), self.counts)
 
     def positions(self, rays):
-        """Compute origin + t * direction of each item.
+        """Compute origin + t * direction of each hit or crossing.
 
         Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
         times the size of origin and position for t of float64.

@@ -6,12 +6,48 @@
 #include <string>
 #include <vector>
 
+#include <raylanes/stretches.hpp>
+
 #include "../oracles/passage_oracle.hpp"
 #include "../support/same_bytes.hpp"
 #include "fence.hpp"
 #include "support.hpp"
 
 namespace raylanes::testing {
+
+// Stretches follow one another within their rays, and the winding number of each is the sum of sides behind its entry.
+template <class Tree, class AnyRay>
+void expect_stretches(const Tree& tree, const std::vector<AnyRay>& rays, const Path* path) {
+  std::vector<AnyRay> whole = rays;
+  for (AnyRay& ray : whole)
+    if (ray.tmin <= ray.tmax) ray.tmax = std::numeric_limits<decltype(ray.tmax)>::infinity();
+  const auto lists = stretches(tree, rays, {.path = path});
+  const auto crossings = tree.crossings(whole, {.path = path});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    auto end = rays[i].tmin;
+    std::int64_t count = 0;
+    for (const auto& stretch : lists[i]) {
+      std::int64_t winding = 0;
+      for (const auto& crossing : crossings[i]) winding += crossing.t > stretch.entry ? crossing.side : 0;
+      if (stretch.entry < end || stretch.exit <= stretch.entry || stretch.exit > rays[i].tmax ||
+          stretch.winding != winding || winding == 0)
+        fail(std::string(path->name) + ": ray " + std::to_string(i) + ": a wrong stretch");
+      end = stretch.exit, ++count;
+    }
+    // Between crossings the number changes, or does not.
+    std::int64_t wanted = 0, before = 0, sum = 0;
+    for (const auto& crossing : crossings[i]) sum += crossing.side;
+    auto from = rays[i].tmin;
+    for (std::size_t k = 0; k <= crossings[i].size(); ++k) {
+      const bool is_last = k == crossings[i].size() || crossings[i][k].t > rays[i].tmax;
+      const auto to = is_last ? rays[i].tmax : crossings[i][k].t;
+      if (to > from) wanted += sum != 0 && sum != before ? 1 : 0, before = sum, from = to;
+      if (is_last) break;
+      sum -= crossings[i][k].side;
+    }
+    if (count != wanted) fail(std::string(path->name) + ": ray " + std::to_string(i) + ": other stretches");
+  }
+}
 
 // The first passages, and those behind them, in place.
 template <class Tree, class AnyMesh, class AnyRay, class Options>
@@ -39,6 +75,7 @@ void expect_passages(const Tree& tree, const AnyMesh& mesh, const std::vector<An
              std::to_string(layer));
     options.after = hits;
   }
+  expect_stretches(tree, rays, options.path);
 }
 
 }  // namespace raylanes::testing

@@ -62,7 +62,7 @@ FOLDERS = {
     'accel/file': ('', TREES),
     'accel/layout': ('', ('test_builders',) + TREES),
     'accel/mesh': ('', ('test_bvh', 'test_points', 'test_queries')),
-    'accel/queries': ('', ('test_queries', 'test_points')),
+    'accel/queries': ('', ('test_queries', 'test_points', 'test_transport')),
     'accel/scene': ('', ('test_scenes',)),
     'accel/trees': ('', ('test_builders', 'test_doubles', 'test_queries') + TREES),
     'python/native': ('', ('python_arrays', 'python_trees', 'python_doubles', 'python_scene_hits',

@@ -113,6 +113,28 @@ def test_any_bits_are_rays_to_all_trees_and_paths():
     assert not hits.hit[~np.isfinite(rays["origin"]).all(axis=1)].any()
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
+def test_stretches_have_the_lengths_within_a_box(kind, dtype):
+    if kind is raylanes.KdTree and dtype is np.float64:
+        pytest.skip("no k-d trees of doubles")
+    tree, random = cube(kind, dtype=dtype), np.random.default_rng(6)
+    origins = random.uniform(-3, 3, (500, 3))
+    targets = random.choice([-1.0, 1.0], (500, 3))
+    targets[::2, 0] = random.uniform(-1, 1, 250)  # corners, and points of edges
+    rays = raylanes.rays(origins, targets - origins, dtype=dtype)
+    lists = tree.stretches(rays)
+    slabs = np.sort((np.array([[-1.0], [1.0]])[:, None] - rays["origin"].astype(float)) / rays["direction"], axis=0)
+    begin, end = np.maximum(slabs[0].max(axis=1), 0), slabs[1].min(axis=1)
+    lengths = np.bincount(lists.ray, (lists.items.exit - lists.items.entry) * lists.items.winding, minlength=500)
+    assert np.abs(lengths - np.maximum(end - begin, 0)).max() < 1e-4
+    inside = np.abs(rays["origin"]).max(axis=1) < 1
+    assert (lists.counts[inside] == 1).all() and (lists.items.winding == 1).all() and lists.counts.max() == 1
+    first = [of_ray[0] for of_ray, within in zip(lists, inside) if within]
+    assert all(one.entry == 0 and one.entered_by == raylanes.no_primitive for one in first)
+    assert isinstance(first[0], raylanes.Stretch) and lists.items.left_by.dtype == np.uint32
+
+
 @pytest.mark.parametrize("kind", [raylanes.Bvh, raylanes.KdTree])
 def test_a_closed_mesh_is_left_as_often_as_entered(kind):
     tree, random = cube(kind), np.random.default_rng(5)

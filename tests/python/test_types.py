@@ -27,7 +27,7 @@ print(raylanes.KdTree([], []).report()["wide_nodes"], raylanes.closed_report([],
 for layer in tree.all_hits([]):
     print(layer.t.shape, layer.positions([]).shape)
 crossings: raylanes.Lists[raylanes.Crossings] = tree.crossings([])
-print(crossings[0].side.shape, crossings.items.side.shape)
+print(crossings[0].side.shape, crossings.items.side.shape, tree.stretches([]).items.winding.shape)
 doubles = raylanes.Bvh([], [], dtype=np.float64)
 print(doubles.dtype == np.float64, doubles.report()["rounded_away"], raylanes.rays([], [], dtype=np.float32).dtype)
 print(raylanes.KdTree([], [], dtype=np.float32).dtype, doubles.closest([]).t.dtype)

@@ -92,6 +92,7 @@ def queries_of(tree):
     yield "occluded_from", lambda: tree.occluded_from(points[0], points, threads=1).tobytes()
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
+    yield "stretches", lambda: lists(tree.stretches(rays, threads=1))
     yield "count_crossings", lambda: tree.count_crossings(rays, threads=1).tobytes()
     for rule in ("parity", "nonzero", "vote", "winding"):
         yield f"locate({rule})", lambda rule=rule: tree.locate(points, rule=rule, threads=1).tobytes()
