@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "double_point_cases.hpp"
+#include "../point/every_tree.hpp"
 
 namespace raylanes::testing {
 namespace {

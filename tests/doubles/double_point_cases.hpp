@@ -103,26 +103,6 @@ inline std::vector<ClosestPointD> one_by_one(const DoubleMesh& mesh, std::span<c
   return closest;
 }
 
-// By every builder, on every path, in batches and alone.
-inline void expect_everywhere(const DoubleMesh& mesh, std::span<const Double3> points,
-                              const std::vector<ClosestPointD>& expected, const std::string& name,
-                              double most = infinite) {
-  for (const TreeBuilder builder : {TreeBuilder::binned_sah, TreeBuilder::morton, TreeBuilder::median}) {
-    const BvhD tree(mesh.vertices, mesh.triangles, {.builder = builder});
-    for (const Path* path : paths_with_own_queries()) {
-      const std::string of_path = name + " on " + path->name;
-      for (const int threads : {1, 2})
-        expect_same(closest_of(tree, points, {.max_distance = most, .path = path, .threads = threads}),
-                    expected, of_path);
-      std::vector<ClosestPointD> single;
-      for (const Double3& point : points)
-        single.push_back(tree.closest_point(point, {.max_distance = most, .path = path}));
-      expect_same(single, expected, of_path + ", alone");
-    }
-    if (::testing::Test::HasFatalFailure()) return;
-  }
-}
-
 inline void expect_near(const DoubleMesh& mesh, std::span<const Double3> points,
                         const std::vector<ClosestPointD>& found, const std::string& name) {
   for (std::size_t i = 0; i < points.size(); ++i)

@@ -1,58 +1,165 @@
-// Closest points by trees: the bytes that all triangles one by one give, whatever tree, builder, path and threads.
+// Closest points by trees of floats and of doubles: the bytes that all triangles one by one give, whatever tree,
+// builder, path and threads; and what rational numbers say of them.
 #include <gtest/gtest.h>
 
-#include <raylanes/raylanes.hpp>
-
+#include "../doubles/both_numbers.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/level.hpp"
 #include "../support/message_of.hpp"
-#include "../support/soa.hpp"
-#include "../support/supported_paths.hpp"
-#include "point_tree_cases.hpp"
+#include "every_tree.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-// By brute force on the first path; then by every tree on every path.
-void expect_brute_force(const Mesh& mesh, std::span<const Float3> points, float most,
-                        const std::string& name) {
-  const std::vector<Triangle> triangles = triangles_of(mesh);
-  const TriangleColumns columns(triangles);
-  std::vector<ClosestPoint> expected;
-  for (const Float3& point : points)
-    expected.push_back(
-        closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
-  std::vector<ClosestPoint> found(points.size());
-  const auto check = [&](const auto& tree, const std::string& kind) {
-    for (const Path* path : paths_with_own_queries())
-      for (const int threads : {1, 2}) {
-        tree.closest_points(points, found, {.max_distance = most, .path = path, .threads = threads});
-        expect_same(found, expected, name + ", " + kind + " on " + path->name);
-      }
+template <class T>
+class ClosestPointsOf : public ::testing::Test {
+ protected:
+  static constexpr bool has_floats = std::is_same_v<T, float>;
+  using AnyMesh = std::conditional_t<has_floats, Mesh, DoubleMesh>;
+  using Tree = std::conditional_t<has_floats, Bvh, BvhD>;
+  using Points = std::vector<PointOf<T>>;
+  struct Case {
+    std::string name;
+    AnyMesh mesh;
   };
-  for (std::size_t i = 0; i < tree_builder_names.size(); ++i)
-    check(Bvh(mesh, {.builder = static_cast<TreeBuilder>(i), .optimize = i % 2 == 0}),
-          std::string(tree_builder_names[i]));
-  for (std::size_t i = 0; i < kd_builder_names.size(); ++i)
-    check(KdTree(mesh, {.builder = static_cast<KdBuilder>(i)}), "k-d " + std::string(kd_builder_names[i]));
-}
 
-TEST(ClosestPointsOfTrees, are_those_of_all_triangles) {
-  Random random(2715);
-  for (const NamedMesh& named : meshes()) {
-    const std::vector<Float3> points = points_for(named.mesh, by_level(900), random);
-    expect_brute_force(named.mesh, points, infinity, named.name);
-    expect_brute_force(named.mesh, std::span(points).first(4), 0.5f, named.name);
-    if (HasFatalFailure()) return;
+  // The oracle of doubles builds a tree for each triangle: fewer points.
+  static std::size_t by_level(std::size_t of_floats, std::size_t of_doubles) {
+    return has_floats ? testing::by_level(of_floats) : of_doubles;
+  }
+  // As it is with floats; of doubles moved and scaled, so that no coordinate is a float.
+  static AnyMesh mesh_of(const Mesh& mesh, double factor = 1.0 / 3, const Double3& offset = {0.1, 0.2, 0.3}) {
+    if constexpr (has_floats)
+      return mesh;
+    else
+      return moved(mesh, factor, offset);
+  }
+  static Points some_points(const AnyMesh& mesh, std::size_t count, std::uint64_t seed) {
+    if constexpr (has_floats) {
+      Random random(seed);
+      return points_for(mesh, count, random);
+    } else {
+      return points_for(mesh, count, seed);
+    }
+  }
+  static std::vector<Case> cases() {
+    std::vector<Case> all;
+    if constexpr (has_floats) {
+      for (NamedMesh& named : meshes()) all.push_back({named.name, std::move(named.mesh)});
+    } else {
+      for (DoubleCase& c : double_cases(0)) all.push_back({c.name, std::move(c.mesh)});
+      all.push_back({"many", moved(ellipsoid(3, {0, 0, 0}), 1e-3, {5e6, -4e6, 1e5})});
+      all.push_back({"doubled grid", moved(doubled(integer_grid(8)), 0.1, {1e5, 0, 0})});
+      all.push_back({"slivers", moved(needles_and_slivers(120, 2712).across, 0.3, {7, 7, 7})});
+    }
+    return all;
+  }
+};
+TYPED_TEST_SUITE(ClosestPointsOf, Numbers, NumberNames);
+
+TYPED_TEST(ClosestPointsOf, trees_are_those_of_all_triangles) {
+  for (const auto& [name, mesh] : this->cases()) {
+    const auto points =
+        this->some_points(mesh, this->by_level(900, by_level<std::size_t>(30, 90, 900)), 2715);
+    const auto expected = one_by_one(mesh, points);
+    expect_everywhere(mesh, points, expected, name);
+    if constexpr (!TestFixture::has_floats) expect_near(mesh, points, expected, name);
+    const std::vector some(points.begin(), points.begin() + std::min<std::ptrdiff_t>(4, std::ssize(points)));
+    expect_everywhere(mesh, some, one_by_one(mesh, some, 0.5), name, 0.5);
+    if (this->HasFatalFailure()) return;
   }
 }
 
-TEST(ClosestPointsOfTrees, keep_to_the_most_distance) {
-  Random random(2716);
-  const Mesh mesh = triangle_soup(200, 0.2f, 2717);
-  const std::vector<Float3> points = points_for(mesh, 100, random);
-  for (const float most : {0.0f, -0.0f, 0x1p-149f, 1e-4f, 0.1f, 1.0f, 3e38f, -1.0f, nan, -infinity})
-    expect_brute_force(mesh, points, most, std::to_string(most));
+TYPED_TEST(ClosestPointsOf, trees_keep_to_the_most_distance) {
+  const auto mesh = this->mesh_of(triangle_soup(200, 0.2f, 2717), 1, {0, 0, 0});
+  const auto points = this->some_points(mesh, this->by_level(100, 30), 2716);
+  for (const double most : {0.0, -0.0, 0x1p-149, 1e-4, 0.1, 1.0, 3e38, -1.0, not_a_number, -infinite})
+    expect_everywhere(mesh, points, one_by_one(mesh, points, most), std::to_string(most), most);
+}
+
+// Squares of distances round by more than triangles differ, and doubles decide between few of them.
+TYPED_TEST(ClosestPointsOf, trees_are_found_from_far_away) {
+  Random random(2724);
+  Mesh aside = triangle_soup(150, 0.3f, 2725), small = ellipsoid(1, {0, 0, 0});
+  for (Float3& vertex : aside.vertices) vertex[0] += 1000, vertex[2] -= 3;
+  scale(small, 0x1p-70f);
+  for (const Mesh& of_floats : {ellipsoid(2, {0, 0, 0}), integer_grid(8), aside, small}) {
+    const auto mesh = this->mesh_of(of_floats, 1, {0, 0, 0});
+    const auto bounds = typename TestFixture::Tree(mesh.vertices, mesh.triangles).bounds();
+    const auto extent = bounds.hi[0] - bounds.lo[0];
+    typename TestFixture::Points points;
+    for (const int exponent : {5, 6, 7, 10, 14, 20, 30, 39, 41})
+      for (int i = 0; i < by_level(4, 8, 24); ++i) {
+        Float3 way = random.point(1);
+        if (i % 4 == 1) way[random.index(3)] = 0;
+        if (i % 4 == 2) way = {0, 0, 0}, way[random.index(3)] = -1;
+        auto& point = points.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) point[k] = bounds.lo[k] + std::ldexp(way[k] * extent, exponent);
+      }
+    const auto expect_exact = [&](const char* name) {
+      expect_everywhere(mesh, points, one_by_one(mesh, points), name);
+      const double most = std::ldexp(double{extent}, 10);
+      expect_everywhere(mesh, points, one_by_one(mesh, points, most), name, most);
+    };
+    expect_exact("far");
+    if constexpr (TestFixture::has_floats) {
+      const FloatModeScope scope(FloatMode::flush);
+      expect_exact("far, flushed");
+    }
+  }
+}
+
+TYPED_TEST(ClosestPointsOf, equal_distances_are_of_the_lowest_primitive) {
+  const auto once = this->mesh_of(ellipsoid(1, {0, 0, 0}), 0.7, {1e6, 0, 0});
+  auto twice = once;
+  twice.triangles.insert(twice.triangles.end(), once.triangles.begin(), once.triangles.end());
+  const auto points = this->some_points(once, 120, 27);
+  expect_everywhere(twice, points, one_by_one(once, points), "twice");
+  std::ranges::reverse(twice.triangles);
+  const typename TestFixture::Tree tree(twice.vertices, twice.triangles);
+  for (const auto& point : points) {
+    const auto found = tree.closest_point(point);
+    ASSERT_TRUE(!found || found.primitive < once.triangles.size());
+  }
+}
+
+TYPED_TEST(ClosestPointsOf, corners_are_there) {
+  for (const auto& [name, mesh] : this->cases()) {
+    const typename TestFixture::Tree tree(mesh.vertices, mesh.triangles);
+    for (const Index3& t : mesh.triangles) {
+      const auto &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+      if (a == b || b == c || c == a) continue;
+      for (const auto& corner : {a, b, c}) ASSERT_EQ(tree.closest_point(corner).distance_squared, 0) << name;
+    }
+  }
+}
+
+TYPED_TEST(ClosestPointsOf, any_bits) {
+  using T = TypeParam;
+  constexpr T most = std::numeric_limits<T>::max(), inf = std::numeric_limits<T>::infinity();
+  const T numbers[] = {0,    T(-0.0), T(5e6), std::numeric_limits<T>::denorm_min(), T(-1e30),
+                       most, -most,   inf,    std::numeric_limits<T>::quiet_NaN()};
+  const auto mesh = this->mesh_of(double_fan(24, 0.3f), 1e-3, {5e6, 4e5, -5e6});
+  typename TestFixture::Points points;
+  std::size_t finite = 0;
+  for (const T x : numbers)
+    for (const T y : numbers)
+      for (const T z : numbers) {
+        points.push_back({x, y, z});
+        finite += std::isfinite(x) && std::isfinite(y) && std::isfinite(z) ? 1 : 0;
+      }
+  const typename TestFixture::Tree tree(mesh.vertices, mesh.triangles), empty;
+  std::vector<ClosestPointOf<T>> found(points.size());
+  tree.closest_points(points, found, {.path = &paths().front()});
+  EXPECT_EQ(std::ranges::count_if(found, [](const auto& closest) { return static_cast<bool>(closest); }),
+            static_cast<std::ptrdiff_t>(finite));
+  expect_everywhere(mesh, points, found, "any bits");
+  for (const auto& point : points) ASSERT_TRUE(same_bytes(empty.closest_point(point), ClosestPointOf<T>()));
+  if constexpr (!TestFixture::has_floats)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!found[i]) continue;
+      ASSERT_EQ(fault_of_closest_point(mesh, points[i], found[i]), "") << i;
+    }
 }
 
 TEST(ClosestPointsOfTrees, have_every_scale) {
@@ -62,35 +169,9 @@ TEST(ClosestPointsOfTrees, have_every_scale) {
     std::vector<Float3> points = points_for(triangle_soup(150, 0.3f, 2719), 100, random);
     for (std::size_t i = 4; i < points.size(); ++i)
       for (float& x : points[i]) x = std::ldexp(x, exponent);
-    expect_brute_force(mesh, points, infinity, "2^" + std::to_string(exponent));
+    expect_everywhere(mesh, points, one_by_one(mesh, points), "2^" + std::to_string(exponent));
     const FloatModeScope scope(FloatMode::flush);
-    expect_brute_force(mesh, points, infinity, "flushed 2^" + std::to_string(exponent));
-  }
-}
-
-// Squares of distances round by more than triangles differ, and doubles decide between few of them.
-TEST(ClosestPointsOfTrees, are_found_from_far_away) {
-  Random random(2724);
-  Mesh moved = triangle_soup(150, 0.3f, 2725);
-  for (Float3& vertex : moved.vertices) vertex[0] += 1000, vertex[2] -= 3;
-  for (const Mesh& mesh :
-       {ellipsoid(2, {0, 0, 0}), integer_grid(8), moved, scaled(ellipsoid(1, {0, 0, 0}), -70)}) {
-    const Box bounds = Bvh(mesh).bounds();
-    const float extent = bounds.hi[0] - bounds.lo[0];
-    std::vector<Float3> points;
-    for (const int exponent : {5, 6, 7, 10, 14, 20, 30, 39, 41}) {
-      for (int i = 0; i < by_level(4, 8, 24); ++i) {
-        Float3 point = random.point(1);
-        if (i % 4 == 1) point[random.index(3)] = 0;
-        if (i % 4 == 2) point = {0, 0, 0}, point[random.index(3)] = -1;
-        for (std::size_t k = 0; k < 3; ++k) point[k] = bounds.lo[k] + std::ldexp(point[k] * extent, exponent);
-        points.push_back(point);
-      }
-    }
-    expect_brute_force(mesh, points, infinity, "far");
-    expect_brute_force(mesh, points, std::ldexp(extent, 10), "far, within 2^10");
-    const FloatModeScope scope(FloatMode::flush);
-    expect_brute_force(mesh, points, infinity, "far, flushed");
+    expect_everywhere(mesh, points, one_by_one(mesh, points), "flushed 2^" + std::to_string(exponent));
   }
 }
 
@@ -104,9 +185,9 @@ TEST(ClosestPointsOfTrees, have_all_scales_at_once) {
   for (std::size_t i = 4; i < points.size(); ++i)
     for (float& x : points[i])
       if (!std::isfinite(x)) x = 0;
-  expect_brute_force(mesh, points, infinity, "all scales");
+  expect_everywhere(mesh, points, one_by_one(mesh, points), "all scales");
   const FloatModeScope scope(FloatMode::flush);
-  expect_brute_force(mesh, points, infinity, "all scales, flushed");
+  expect_everywhere(mesh, points, one_by_one(mesh, points), "all scales, flushed");
 }
 
 // Not only what the text of doubles says: rationals, over all triangles.
@@ -131,73 +212,6 @@ TEST(ClosestPointsOfTrees, are_the_nearest_by_rationals) {
     EXPECT_LE(oracle::exact_square_of_distance(at, t), mpq_class(0x1p-44)) << i;  // rounded to floats
     EXPECT_NEAR(std::hypot(at[0] - points[i][0], at[1] - points[i][1], at[2] - points[i][2]),
                 std::sqrt(found.distance_squared), 1e-6 * (1 + std::sqrt(found.distance_squared)));
-  }
-}
-
-// A refitted tree answers as a new one, also where triangles became segments: next to others, and alone.
-TEST(ClosestPointsOfTrees, follow_a_refit) {
-  Random random(2724);
-  for (Mesh mesh : {ellipsoid(2, {0, 0, 0}), triangle_soup(300, 0.2f, 2727)}) {
-    Bvh bvh(mesh);
-    for (Float3& v : mesh.vertices)
-      for (float& x : v) x += random.number(-0.2f, 0.2f);
-    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
-      mesh.vertices[mesh.triangles[i][1]] = mesh.vertices[mesh.triangles[i][0]];
-    bvh.refit(mesh.vertices, mesh.triangles);
-    std::vector<Float3> points = points_for(mesh, 200, random);
-    for (const Float3& point : clusters(mesh, 40, 45, random)) points.push_back(point);
-    const Bvh built(mesh);
-    for (const Path* path : paths_with_own_queries()) {
-      std::vector<ClosestPoint> found(points.size()), expected(points.size());
-      bvh.closest_points(points, found, {.path = path});
-      built.closest_points(points, expected, {.path = path});
-      expect_same(found, expected, "refitted");
-    }
-  }
-}
-
-// On the active path, whichever that is.
-void expect_calls(const TriangleTree& tree, const Mesh& mesh, std::span<const Float3> points,
-                  const std::string& name) {
-  const TriangleColumns columns(triangles_of(mesh));
-  for (const float most : {infinity, 0.3f, 0.0f}) {
-    std::vector<ClosestPoint> expected;
-    for (const Float3& point : points)
-      expected.push_back(
-          closest_point(point, columns.arrays(), {.max_distance = most, .path = &paths().front()}));
-    for (const Path* path : paths_with_own_queries()) {
-      force_path(path->name);
-      std::vector<ClosestPoint> found;
-      for (const Float3& point : points) found.push_back(tree.closest_point(point, {.max_distance = most}));
-      expect_same(found, expected, name + " on " + path->name);
-      if (most < infinity) continue;
-      for (std::size_t i = 0; i < points.size(); ++i) found[i] = tree.closest_point(points[i]);
-      expect_same(found, expected, name + ", no options, on " + path->name);
-    }
-    unforce_path();
-  }
-}
-
-TEST(ClosestPointsOfTrees, are_those_of_calls_with_one_point) {
-  Random random(2735);
-  for (NamedMesh& named : meshes()) {
-    const std::vector<Float3> points = points_for(named.mesh, by_level(300), random);
-    Bvh bvh(named.mesh);
-    expect_calls(bvh, named.mesh, points, named.name);
-    expect_calls(KdTree(named.mesh), named.mesh, points, std::string(named.name) + ", k-d");
-    for (Float3& v : named.mesh.vertices) v = {v[1] + 0.25f, v[2], v[0]};
-    bvh.refit(named.mesh.vertices, named.mesh.triangles);
-    const Bvh moved = std::move(bvh);
-    expect_calls(moved, named.mesh, points, std::string(named.name) + ", refitted and moved");
-    if (HasFatalFailure()) return;
-  }
-  const FloatModeScope scope(FloatMode::flush);
-  for (const int exponent : {-120, 0, 100}) {
-    const Mesh mesh = scaled(triangle_soup(150, 0.3f, 2736), exponent);
-    std::vector<Float3> points = points_for(triangle_soup(150, 0.3f, 2736), 100, random);
-    for (std::size_t i = 4; i < points.size(); ++i)
-      for (float& x : points[i]) x = std::ldexp(x, exponent);
-    expect_calls(Bvh(mesh), mesh, points, "flushed 2^" + std::to_string(exponent));
   }
 }
 
