@@ -105,9 +105,9 @@ struct EdgeBounds {
     if (zeros == 7u) least = largest = V(T{0});
   }
 
-  // NaN is neither.
-  auto certainly_outside(V within) const { return min(largest, -least) > within; }
-  auto certainly_outside() const { return certainly_outside(bound); }
+  // NaN is neither. outside_by(): how far weights lie on both sides of zero.
+  V outside_by() const { return min(largest, -least); }
+  auto certainly_outside() const { return outside_by() > bound; }
   auto certainly_inside() const { return max(least, -largest) > bound; }
 
   // The determinant, and the volume, which is depth times the determinant. The plane is met at t = depth() / (det() ·

@@ -59,13 +59,13 @@ struct Exact : OfCorners {
     };
     Vec3<V> a = to_origin(0), b = to_origin(3), c = to_origin(6);
     EdgeBounds<V, P> edges(a, b, c, {ray.shear_x, ray.shear_y});
+    V outside_by = sides.outside_by(edges), none(0.0f);
     std::uint32_t undecided = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
-    V none(0.0f);
     if constexpr (in_tree) {
-      undecided &= ~bits(sides.outside(edges, ray.bound_anywhere));
+      undecided &= ~bits(outside_by > ray.bound_anywhere);
       if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
     }
-    undecided &= ~bits(sides.outside(edges, edges.bound));
+    undecided &= ~bits(outside_by > edges.bound);
     if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
     auto range = segment();
     DepthBounds<V, P> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);

@@ -59,11 +59,11 @@ struct BothSides {
     return lanes;
   }
 
-  // Whether weights with errors of at most `within` certainly mean a miss. mirrored: whether positive weights mean the
-  // back.
-  template <class Edges, class V>
-  static auto outside(const Edges& edges, V within, bool = false) {
-    return edges.certainly_outside(within);
+  // By how much weights have a sign that means a miss: beyond the bound of their errors it is certain.
+  // mirrored: whether positive weights mean the back.
+  template <class Edges>
+  static auto outside_by(const Edges& edges, bool = false) {
+    return edges.outside_by();
   }
   // The sign by which weights are positive in a triangle that is hit, from that of the determinant d · normal.
   template <class Sign>
@@ -95,10 +95,10 @@ struct ChosenTriangles {
     return lanes_but(skipped, lanes, triangles, first);
   }
 
-  template <class Edges, class V>
-  auto outside(const Edges& edges, V within, bool mirrored = false) const {
-    if (facing == Facing::any) return edges.certainly_outside(within);
-    return (is_front() != mirrored ? -edges.least : edges.largest) > within;
+  template <class Edges>
+  auto outside_by(const Edges& edges, bool mirrored = false) const {
+    if (facing == Facing::any) return edges.outside_by();
+    return is_front() != mirrored ? -edges.least : edges.largest;
   }
   template <class Sign>
   Sign of_weights(Sign of_det) const {

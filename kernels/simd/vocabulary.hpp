@@ -38,8 +38,7 @@
 //   compress_store(p, m, a)      the words of the lanes of m, packed, at p, where N are written; returns their number
 //   integers: + - & | ^          modulo 2^width; max of unsigned numbers
 //
-// On paths with eight lanes or more and FMA (has_node_lanes), for single rays. Words are compared as signed numbers:
-//
+// On paths with eight lanes or more and FMA (has_node_lanes), for single rays:
 //   four_floats(a, b, c, d)      four lanes from four numbers; four_doubles so
 //   permute<i, j, k, l>(a)       lanes i, j, k, l of four floats or doubles
 //   permute(a, order)            lane order[i] of four floats or eight words, modulo the lanes
@@ -48,8 +47,9 @@
 //   to_four_doubles(a)           four floats as doubles, to_four_floats(a) back, rounded
 //   four_sums(a, b, c, d)        of four doubles each: (a[0] + a[1]) + (a[2] + a[3]), the same of b, c, d
 //   three_columns(a, b, c, d, x) lane k of four doubles each become x[k], for the first three lanes
-//   min_signed(a)              the least of eight words
-//   sort_descending_signed(a)    eight words, the largest first
+//   min_unsigned(a)              the least of eight words
+//   sort_descending_signed(a)    eight words as signed numbers, the largest first
+//   in_memory(object)            the same object: its members are read from memory at each use
 //
 // Everything lives in an unnamed namespace: an object compiled for AVX2 must not share a function with
 // baseline code through the linker.

@@ -95,9 +95,9 @@ inline void walk_rest(const TreeView& tree, const Ray& ray, Query& query, bool h
     if (has_ended && query.beside > max_beside) [[unlikely]]
       walk_unusual<Test>(tree, ray, query);
 }
-// Out of line: one function serves all modes, as it is much code.
+// From the root, for any ray.
 template <class Test, class Query>
-[[gnu::noinline, gnu::flatten]] void walk_usual(const TreeView& tree, const Ray& ray, Query& query) {
+inline void walk_from_root(const TreeView& tree, const Ray& ray, Query& query) {
   FusedRay nodes;
   if (nodes.prepare<Test>(tree, ray)) [[likely]] {
     const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
@@ -105,6 +105,22 @@ template <class Test, class Query>
   } else {
     walk_unusual<Test>(tree, ray, query);
   }
+}
+// Out of line: one function serves all modes, as it is much code.
+template <class Test, class Query>
+[[gnu::noinline, gnu::flatten]] void walk_usual(const TreeView& tree, const Ray& ray, Query& query) {
+  walk_from_root<Test>(tree, ray, query);
+}
+// Whether the ray hits anything up to tmax. Argument and result stay in registers.
+template <class Test>
+[[gnu::noinline, gnu::flatten]] bool is_occluded(const TreeView& tree, const Ray& ray, float tmax) {
+  AnyHit query(tmax);
+  walk_from_root<Test>(tree, ray, query);
+  return query.found;
+}
+template <class Test>
+inline void walk_usual(const TreeView& tree, const Ray& ray, AnyHit& query) {
+  query.found = is_occluded<Test>(tree, ray, query.tmax);
 }
 
 struct Flights {

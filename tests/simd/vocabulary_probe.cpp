@@ -177,7 +177,7 @@ constexpr auto eight_words_probes() {
   const auto sort = [](auto a) { return sort_descending_signed(a); };
   return list_of(
       probe<std::uint32_t, 8, 2>("permute_by", [](auto a, auto order) { return permute(a, order); }),
-      probe<std::uint32_t, 8, 1>("min_signed", [](auto a) { return Words(min_signed(a)); }),
+      probe<std::uint32_t, 8, 1>("min_unsigned", [](auto a) { return Words(min_unsigned(in_memory(a))); }),
       probe<std::uint32_t, 8, 1>("sort_descending_signed", sort),
       probe<std::uint32_t, 8, 1>("sort_zeros_and_ones", sort));
 }

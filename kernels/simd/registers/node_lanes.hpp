@@ -81,11 +81,11 @@ inline void three_columns(Lanes<double, 4> a, Lanes<double, 4> b, Lanes<double, 
   columns[2] = lanes_of_register<double, 4>(_mm256_permute2f128_pd(ab, cd, 0x31));
 }
 
-inline std::uint32_t min_signed(FloatBits<8> x) {
+inline std::uint32_t min_unsigned(FloatBits<8> x) {
   const __m256i words = register_of(x);
-  __m128i least = _mm_min_epi32(_mm256_castsi256_si128(words), _mm256_extracti128_si256(words, 1));
-  least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0b01'00'11'10));
-  least = _mm_min_epi32(least, _mm_shuffle_epi32(least, 0b10'11'00'01));
+  __m128i least = _mm_min_epu32(_mm256_castsi256_si128(words), _mm256_extracti128_si256(words, 1));
+  least = _mm_min_epu32(least, _mm_shuffle_epi32(least, 0b01'00'11'10));
+  least = _mm_min_epu32(least, _mm_shuffle_epi32(least, 0b10'11'00'01));
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(least));
 }
 
@@ -104,6 +104,17 @@ inline FloatBits<8> sort_descending_signed(FloatBits<8> x) {
   v = exchange<0b00110000>(v, _mm256_permutevar8x32_epi32(v, _mm256_setr_epi32(0, 1, 4, 5, 2, 3, 6, 7)));
   v = exchange<0b01010100>(v, _mm256_permutevar8x32_epi32(v, _mm256_setr_epi32(0, 2, 1, 4, 3, 6, 5, 7)));
   return lanes_of_register<std::uint32_t, 8>(v);
+}
+
+// The same object, whose members the compiler reads from memory at each use. Otherwise g++ keeps the constants of a
+// loop in registers, and spills what an inner loop needs. clang does not, and AVX-512 has registers enough.
+template <class T>
+inline const T& in_memory(const T& object) {
+  const T* address = &object;
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__AVX512VL__)
+  asm volatile("" : "+r"(address));
+#endif
+  return *address;
 }
 
 }  // namespace

@@ -60,9 +60,7 @@ template <class Test>
 template <class Test>
 bool any_fused(const TreeView& tree, const Ray& ray) {
   if (tree.root == empty_reference) return false;
-  AnyHit query(ray);
-  walk_usual<Test>(tree, ray, query);
-  return query.found;
+  return is_occluded<Test>(tree, ray, finite_tmax(ray.tmax));
 }
 
 struct CallRows {

@@ -25,9 +25,8 @@ class ExactLeaves {
     const auto order = FloatBits<4>::load(axes_by_major[nodes.major]);
     Floats<4> o = permute(Floats<4>::load(numbers), order), d = permute(Floats<4>::load(numbers + 4), order);
     Floats<4> z = permute<2, 2, 2, 2>(d), slopes = d / -z;  // 1 / z is finite: see FusedRay
-    origin_ = {eight_of_lane<0>(o), eight_of_lane<1>(o), eight_of_lane<2>(o)};
-    direction_z_ = eight_of_lane<2>(d), shear_ = {eight_of_lane<0>(slopes), eight_of_lane<1>(slopes)};
-    bound_anywhere_ = V(EdgeBounds<Floats<1>>::bound_within(nodes.reach).raw);
+    o.store(origin_), d.store(direction_), slopes.store(shear_);
+    bound_anywhere_ = EdgeBounds<Floats<1>>::bound_within(nodes.reach).raw;
   }
 
   // The edges alone say which triangles may be hit, and branches the rest: only tmax waits for the division.
@@ -38,7 +37,7 @@ class ExactLeaves {
     std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     const std::uint32_t inside = bits(edges.certainly_inside());
-    DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
+    DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
     alignas(32) float t_lo[tree_width], t_hi[tree_width];
     t.t_lo.store(t_lo), t.t_hi.store(t_hi);
     std::uint32_t unclear = 0;
@@ -64,7 +63,7 @@ class ExactLeaves {
     const auto edges = edges_of(leaf, z);
     std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
-    DepthBounds<V> t(edges, z[0], z[1], z[2], direction_z_);
+    DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
     V tmin(ray_.tmin), tmax(query.tmax);
     undecided &= ~bits((t.t_lo > tmax) | (t.t_hi < tmin));
     if (undecided == 0) return false;
@@ -88,33 +87,35 @@ class ExactLeaves {
     // Rows are indexed as one array of floats.
     const auto* const numbers = reinterpret_cast<const float*>(block.number);
     const float *const x = numbers + row_[0], *const y = numbers + row_[1], *const z_row = numbers + row_[2];
+    const ExactLeaves& ray = in_memory(*this);
+    Vec3<V> origin(V(ray.origin_[0]), V(ray.origin_[1]), V(ray.origin_[2]));
     const auto to_origin = [&](std::ptrdiff_t corner) {
       const auto number = [&](const float* row) { return V::load(row + corner * 3 * tree_width); };
-      return Vec3<V>(origin_.x - number(x), origin_.y - number(y), origin_.z - number(z_row));
+      return Vec3<V>(origin.x - number(x), origin.y - number(y), origin.z - number(z_row));
     };
     Vec3<V> a = to_origin(0), b = to_origin(1), c = to_origin(2);
     z[0] = a.z, z[1] = b.z, z[2] = c.z;
-    return EdgeBounds<V>(a, b, c, shear_);
+    return EdgeBounds<V>(a, b, c, Shear<V>{V(ray.shear_[0]), V(ray.shear_[1])});
   }
   // Triangles that count and that the edges do not leave out, first by the bound of any triangle.
   // The order of axes mirrors triangles for a negative direction along the major one.
   template <class Sides>
   std::uint32_t chosen_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
     const bool mirrored = ray_.direction[nodes_.major] < 0.0f;
-    const std::uint32_t occupied = (2u << (leaf_size(leaf) - 1)) - 1u;
-    const std::uint32_t undecided = occupied & ~bits(sides.outside(edges, bound_anywhere_, mirrored));
+    // NaN, which is not within a bound, stands in lanes without a triangle alone: docs/exact.md, part 2.
+    V outside_by = sides.outside_by(edges, mirrored);
+    if (bits(outside_by <= V(in_memory(*this).bound_anywhere_)) == 0) return 0;
+    const std::uint32_t undecided = bits(outside_by <= edges.bound);
     if (undecided == 0) return 0;
-    return sides.chosen(undecided & ~bits(sides.outside(edges, edges.bound, mirrored)), TreeTriangles(tree_),
-                        leaf_triangle_of(leaf, 0));
+    return sides.chosen(undecided, TreeTriangles(tree_), leaf_triangle_of(leaf, 0));
   }
 
   const TreeView& tree_;
   const Ray& ray_;
   const FusedRay& nodes_;
   const std::ptrdiff_t* row_;
-  Vec3<V> origin_;
-  V direction_z_, bound_anywhere_;
-  Shear<V> shear_;
+  alignas(16) float origin_[4], direction_[4], shear_[4];  // in the ray's order of axes
+  float bound_anywhere_;
 };
 
 // By another test, as where rays are not fused.

@@ -19,15 +19,21 @@ struct HitChildren {
   NodeWords select(NodeWords hit, NodeWords other) const { return select_bits(mask, hit, other); }
 };
 
-inline constexpr std::uint32_t lane_numbers[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
+// The key of a child: the bits of its entry that the key keeps, and the child's number. `none`: the key of a child that
+// is not hit, behind all others. Few nodes need these constants, so they stay in memory.
+struct alignas(32) KeyParts {
+  std::uint32_t child[tree_width] = {0, 1, 2, 3, 4, 5, 6, 7};
+  std::uint32_t entry[tree_width] = {~7u, ~7u, ~7u, ~7u, ~7u, ~7u, ~7u, ~7u};
+  std::uint32_t none[tree_width] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
+};
+inline constexpr KeyParts key_parts;
 
 // The stack of the nearest hit: references, and where the ray enters their boxes, with room for a vector more. The
 // caller keeps their number in a register.
 template <std::size_t room>
 class WaitingNearest {
  public:
-  // Goes on with the nearest of two children or more. Entries are not negative, so they compare as words, whose last
-  // three bits are the child's number.
+  // Goes on with the nearest of two children or more. Entries are not negative, so keys compare as entries do.
   TreeReference push(const WideNode& node, const HitChildren& hit, NodeFloats entry, std::size_t& size) {
     if (const std::uint32_t others = hit.but_first(); (others & (others - 1)) == 0) {
       alignas(32) float at[tree_width];
@@ -40,9 +46,10 @@ class WaitingNearest {
       ++size;
       return a_is_nearer ? of_a : of_b;
     }
-    NodeWords key = key_of(entry);
-    const std::uint32_t nearest = min_signed(hit.select(key, NodeWords(0x7fffffffu))) & 7u;
-    store_sorted(node, hit, key, size);
+    const KeyParts& parts = in_memory(key_parts);
+    NodeWords key = hit.select(key_of(entry, parts), NodeWords::load(parts.none));
+    const std::uint32_t nearest = min_unsigned(key) & 7u;
+    store_sorted(node, key, size, parts);
     // The nearest, which goes on, is behind those that stay; so are lanes that are not hit.
     size += static_cast<std::size_t>(std::popcount(hit.but_first()));
     return node.child[nearest];
@@ -60,7 +67,7 @@ class WaitingNearest {
   }
   // All children that are hit, without a branch.
   void push_all(const WideNode& node, const HitChildren& hit, NodeFloats entry, std::size_t& size) {
-    store_sorted(node, hit, key_of(entry), size);
+    store_sorted(node, hit.select(key_of(entry, key_parts), NodeWords(~0u)), size, key_parts);
     size += static_cast<std::size_t>(std::popcount(hit.lanes));
   }
   bool pop(TreeReference& next, float tmax, std::size_t& size) const {
@@ -73,14 +80,14 @@ class WaitingNearest {
   }
 
  private:
-  static NodeWords key_of(NodeFloats entry) {
-    return (as<std::uint32_t>(entry) & NodeWords(~7u)) | NodeWords::load(lane_numbers);
+  static NodeWords key_of(NodeFloats entry, const KeyParts& parts) {
+    return (as<std::uint32_t>(entry) & NodeWords::load(parts.entry)) | NodeWords::load(parts.child);
   }
   // The farthest first.
-  void store_sorted(const WideNode& node, const HitChildren& hit, NodeWords key, std::size_t size) {
-    NodeWords sorted = sort_descending_signed(hit.select(key, NodeWords(~0u)));
+  void store_sorted(const WideNode& node, NodeWords key, std::size_t size, const KeyParts& parts) {
+    NodeWords sorted = sort_descending_signed(key);
     permute(NodeWords::load(node.child), sorted).store(reference_ + size);
-    as<float>(sorted & NodeWords(~7u)).store(t_ + size);
+    as<float>(sorted & NodeWords::load(parts.entry)).store(t_ + size);
   }
 
   alignas(64) TreeReference reference_[room + tree_width];
@@ -132,23 +139,24 @@ inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
   WaitingOf<Query::only_decides, max_stack> waiting;
   std::size_t size = 0;
   TreeReference next = tree.root;
-  NodeFloats tmax(query.box_tmax());
+  float end = query.box_tmax();
   do {
-    bool reached = true;
+    const NodeFloats tmax(end);
     while (!refers_to_leaf(next)) {
       const WideNode& node = tree.nodes[next];
       NodeFloats entry = boxes.entries(node);
       const HitChildren hit(entry, boxes.exits(node, tmax));
-      reached = hit.lanes != 0;
-      if (!reached) break;
-      next = hit.is_one() ? node.child[std::countr_zero(hit.lanes)] : waiting.push(node, hit, entry, size);
+      if (hit.lanes == 0) {
+        if (!waiting.pop(next, end, size)) return false;
+      } else {
+        next = hit.is_one() ? node.child[std::countr_zero(hit.lanes)] : waiting.push(node, hit, entry, size);
+      }
     }
-    if (!reached) continue;
     if constexpr (requires { Leaves::prefetched; })
       waiting.template prefetch_next<Leaves::prefetched>(tree, leaves, size);
     if (leaves.visit(next, query)) return true;
-    if constexpr (!Query::only_decides) tmax = NodeFloats(query.box_tmax());
-  } while (waiting.pop(next, query.box_tmax(), size));
+    if constexpr (!Query::only_decides) end = query.box_tmax();
+  } while (waiting.pop(next, end, size));
   return false;
 }
 

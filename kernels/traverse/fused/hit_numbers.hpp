@@ -58,9 +58,8 @@ class HitNumbers {
     return (bits((high_ < least) | (low_ > largest)) & 7u) != 0;
   }
   Hit hit(std::uint32_t primitive) const {
-    alignas(16) float rounded[4];
-    (high_ + Floats<4>(0.0f)).store(rounded);
-    return {rounded[2], rounded[0], rounded[1], primitive};
+    Floats<4> rounded = permute<2, 0, 1, 3>(high_ + Floats<4>(0.0f));
+    return std::bit_cast<Hit>(blend<8>(rounded, Floats<4>(std::bit_cast<float>(primitive))));
   }
 
  private:
