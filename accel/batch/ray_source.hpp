@@ -14,12 +14,13 @@
 
 namespace raylanes {
 
-// Rays from one point to others.
+// Rays from points to one point, or in one direction. They begin at the points: beside these the other end may be far.
 template <class T>
 struct SegmentsOf {
-  PointOf<T> from;
+  PointOf<T> to;
   VertexRecords<T> points;
-  SegmentEndsOf<T> ends;
+  SegmentEndsOf<T> ends = {};  // as shares from the other end on
+  bool is_direction = false;
 
   RayOf<T> operator[](std::size_t i) const {
     RayOf<T> ray;
@@ -28,22 +29,37 @@ struct SegmentsOf {
   }
   // Number by number where the ray is to lie: one that is put together elsewhere and copied waits for its own stores.
   void put(std::size_t i, RayOf<T>& ray) const {
-    const PointOf<T> to = points[i];
+    const PointOf<T> from = points[i];
+    if (is_direction) {
+      ray.origin = from, ray.direction = to;
+      ray.tmin = 0, ray.tmax = std::numeric_limits<T>::infinity();
+      return;
+    }
     T none = 0;  // NaN if a difference is not finite
-    ray.tmin = ends.start, ray.tmax = ends.end;
+    ray.tmin = 1 - ends.end, ray.tmax = last_t();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const T difference = to[axis] - from[axis];
       ray.origin[axis] = from[axis], ray.direction[axis] = difference;
       none += difference - difference;
     }
     if (none != 0) [[unlikely]]
-      halve(ray, to);
+      halve(ray);
+  }
+  // The point where all end, if none goes on behind it or begins behind its own; else null.
+  const PointOf<T>* shared_end() const {
+    return !is_direction && ends.start >= 0 && ends.end <= 1 ? &to : nullptr;
   }
 
  private:
+  // Not the other end itself, if that is left out by less than numbers below 1 tell.
+  T last_t() const {
+    constexpr T below_one = 1 - std::numeric_limits<T>::epsilon() / 2;
+    const T t = 1 - ends.start;
+    return ends.start > 0 && t > below_one ? below_one : t;
+  }
   static bool overflows(T x) { return x - x != 0; }
   // Twice the ends of half the direction are the same segment. Points that are not finite stay so.
-  static void halve(RayOf<T>& ray, const PointOf<T>& to) {
+  void halve(RayOf<T>& ray) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       T& x = ray.direction[axis];
       x = overflows(x) ? T(0.5) * to[axis] - T(0.5) * ray.origin[axis] : T(0.5) * x;
@@ -64,6 +80,12 @@ struct RaySourceOf {
 
   std::size_t size() const {
     return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
+  }
+  const PointOf<T>* shared_end() const { return segments != nullptr ? segments->shared_end() : nullptr; }
+  // The sides that count for the rays: segments are seen from the end that they share.
+  Facing sides(Facing facing) const {
+    if (segments == nullptr || segments->is_direction) return facing;
+    return facing == Facing::front ? Facing::back : facing == Facing::back ? Facing::front : facing;
   }
   bool takes_part(std::size_t i) const { return raylanes::takes_part(active, i); }
   bool takes_all() const { return active == nullptr; }

@@ -100,9 +100,21 @@ void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& cho
 void run_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   run_by(mode_of_others(tree, choice, batch), tree, choice, batch);
 }
+// Rays whose common end the caller knows, if packets are wanted and may pay.
+bool has_end(const TraversalChoice& choice, const TraceBatch& batch) {
+  if (choice.end == nullptr || choice.packet == choice.single) return false;
+  if (choice.mode == TraversalMode::packet) return true;
+  return choice.mode == TraversalMode::automatic && choice.hint != BatchHint::incoherent &&
+         batch.size >= min_shared_point;
+}
+// Measured: from farther away, in sizes of the tree, frusta are too wide.
+constexpr double most_sizes_of_frusta = 256;
+
 // Rays with a common point.
 void run_shared(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch, SharedApex shared,
                 const Float3& point) {
+  if (choice.mode != TraversalMode::packet && !is_near(point, tree.bounds, most_sizes_of_frusta))
+    return run_others(tree, choice, batch);
   const TraversalMode mode = mode_of_coherent(tree, choice, batch, shared, point);
   if (mode != TraversalMode::packet) return run_by(mode, tree, choice, batch);
   batch.shared_point = shared, batch.shared_end = point;
@@ -136,6 +148,7 @@ bool is_tiny(const Box& bounds) {
 // Traces runs of rays that share an origin, and the rays between runs.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   if (choice.mode == TraversalMode::single || is_tiny(tree.bounds)) return run(tree, *choice.single, batch);
+  if (has_end(choice, batch)) return run_shared(tree, choice, batch, SharedApex::end, *choice.end);
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool origins = looks_for(choice, BatchHint::shared_origin),
              ends = batch.occluded != nullptr && looks_for(choice, BatchHint::shared_end);
@@ -167,8 +180,9 @@ bool do_rays_wait(double shared_visits, std::size_t bytes) {
 }
 
 template <class Sink>
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
+void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,
            int threads) {
+  choice.end = rays.shared_end();
   BatchPlan plan{threads, choice.counters};
   plan.progress = choice.progress, plan.fixed_parts = choice.fixed_parts;
   over_calls(
@@ -182,9 +196,8 @@ void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource&
         run(tree, choice, batch);
       });
 }
-template void trace(const TreeView&, const TraversalChoice&, const RaySource&, const HitSink<Hit>&, int);
-template void trace(const TreeView&, const TraversalChoice&, const RaySource&, const SpanSink<std::uint8_t>&,
-                    int);
+template void trace(const TreeView&, TraversalChoice, const RaySource&, const HitSink<Hit>&, int);
+template void trace(const TreeView&, TraversalChoice, const RaySource&, const SpanSink<std::uint8_t>&, int);
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;

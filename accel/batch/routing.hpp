@@ -20,6 +20,8 @@ struct TraversalChoice {
   bool may_fly = false;  // whether the rows of single rays have code for some at a time
   const Progress* progress = nullptr;
   bool fixed_parts = false;  // as in BatchPlan
+  const Float3* end =
+      nullptr;  // where all rays end but for the rounding of their directions; null: not known
 };
 
 // For a tree with these shared_visits(); as measured.
@@ -30,7 +32,7 @@ bool do_rays_wait(double shared_visits, std::size_t bytes);
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
 // Sinks are HitSink<Hit> and SpanSink<std::uint8_t>.
 template <class Sink>
-void trace(const TreeView& tree, const TraversalChoice& choice, const RaySource& rays, const Sink& sink,
+void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,
            int threads);
 
 // All rays of a batch on this thread, whose answers lie in a row, with scratch of its own; `size` at most

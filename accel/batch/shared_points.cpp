@@ -118,6 +118,18 @@ template std::size_t count_before_shared_origin(std::span<const RayD>);
 template bool are_coherent(std::span<const Ray>, const Box&);
 template bool are_coherent(std::span<const RayD>, const BoxD&);
 
+template <class AnyPoint, class AnyBox>
+bool is_near(const AnyPoint& point, const AnyBox& box, double most_sizes) {
+  double farthest = 0, size = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = point[axis], lo = box.lo[axis], hi = box.hi[axis];
+    farthest = std::max({farthest, x - lo, hi - x}), size = std::max(size, hi - lo);
+  }
+  return farthest <= most_sizes * size;
+}
+template bool is_near(const Float3&, const Box&, double);
+template bool is_near(const Double3&, const BoxD&, double);
+
 bool begin_outside(std::span<const RayD> rays, const BoxD& box) {
   const std::size_t step = std::max<std::size_t>(1, rays.size() / looked_at);
   std::size_t outside = 0, looked = 0;

@@ -59,6 +59,11 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
                                    std::span<const RayOf<T>> rays, SharedApex shared, const PointOf<T>& point,
                                    bool by_origins = false);
 
+// Whether no point of the box is farther away along an axis than so many times its largest side. Frusta are widened by
+// a share of that way.
+template <class AnyPoint, class AnyBox>
+bool is_near(const AnyPoint& point, const AnyBox& box, double most_sizes);
+
 // Whether rays that have a common point go as packets: not where these would test many triangles for each ray.
 enum class PacketsOf { nearest_hits, any_hits, doubles };
 bool packets_pay(const TrianglesOfRays& triangles, PacketsOf kind);

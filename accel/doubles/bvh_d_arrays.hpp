@@ -89,5 +89,7 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
                 const TraceOptionsD& options);
 void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options);
+void trace_segments(const DoubleTreeView& tree, const SegmentsOf<double>& segments,
+                    std::span<std::uint8_t> occluded, const TraceOptionsD& options);
 
 }  // namespace raylanes

@@ -36,9 +36,27 @@ void run_apart(const DoubleRayKernels& kernels, const DoubleTreeView& tree, cons
   (should_stream(tree, {batch.rays, batch.size}, is_closest) ? stream : single)(tree, batch);
 }
 
+// From farther away, in sizes of the tree, points are no apex in its frame.
+constexpr double most_sizes_of_frusta = 4;
+
+// Rays that share an origin, or end at a point.
+void run_shared(const DoubleRayKernels& kernels, const DoubleTreeView& tree, DoubleBatch batch,
+                SharedApex shared, const Double3& point) {
+  if (!is_near(point, tree.bounds, most_sizes_of_frusta) ||
+      !packets_pay(
+          triangles_of_a_ray<double>(tree, kernels.nearest_triangle, {batch.rays, batch.size}, shared, point),
+          PacketsOf::doubles))
+    return run_apart(kernels, tree, batch);
+  batch.shared_point = shared, batch.shared_end = point;
+  kernels.packet(tree, batch);
+}
+
 // Nearest hits of both sides, or whether there are any. Traces runs of rays that share an origin, and the rays between
-// runs.
-void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
+// runs. `end`: where all rays end, if that is known.
+void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch,
+                  const Double3* end) {
+  if (end != nullptr && batch.size >= min_shared_point)
+    return run_shared(kernels, tree, batch, SharedApex::end, *end);
   const std::span<const RayD> rays(batch.rays, batch.size);
   for (std::size_t i = 0, count; i < rays.size(); i += count) {
     const auto left = rays.subspan(i);
@@ -46,11 +64,8 @@ void run_together(const DoubleRayKernels& kernels, const DoubleTreeView& tree, c
     const bool is_shared = count >= min_shared_point;
     if (!is_shared) count = std::max(count, count_before_shared_origin(left));
     const DoubleBatch part = batch.part(i, count);
-    if (is_shared &&
-        packets_pay(triangles_of_a_ray<double>(tree, kernels.nearest_triangle, {part.rays, part.size},
-                                               SharedApex::origin, left[0].origin),
-                    PacketsOf::doubles))
-      kernels.packet(tree, part);
+    if (is_shared)
+      run_shared(kernels, tree, part, SharedApex::origin, left[0].origin);
     else
       run_apart(kernels, tree, part);
   }
@@ -85,7 +100,9 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
     return over_calls(
         plan_of(options, rays.size()), rays, HitSink<HitD>{hits},
         [&](std::size_t n) { return scratch_bytes(kernels, n); },
-        [&](const RayCall<HitD, RayD>& call) { run_together(kernels, tree, batch_of(call, nullptr)); });
+        [&](const RayCall<HitD, RayD>& call) {
+          run_together(kernels, tree, batch_of(call, nullptr), nullptr);
+        });
   trace_behind(plan_of(options, 0), rays, hits, options.after,
                [&](const RayCall<HitD, RayD>& call, const HitD* last) {
                  kernels.closest(tree, batch_of(call, last));
@@ -105,12 +122,18 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays,
       [&](const RayCall<std::uint8_t, RayD>& call) {
         DoubleBatch batch;
         batch.rays = call.rays, batch.size = call.size, batch.occluded = call.answers;
-        batch.facing = options.facing, batch.skip = call.skip, batch.scratch = call.scratch;
+        batch.facing = rays.sides(options.facing), batch.skip = call.skip, batch.scratch = call.scratch;
         if (together)
-          run_together(kernels, tree, batch);
+          run_together(kernels, tree, batch, rays.shared_end());
         else
           kernels.any(tree, batch);
       });
+}
+void trace_segments(const DoubleTreeView& tree, const SegmentsOf<double>& segments,
+                    std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
+  require_points("trace", segments.points);
+  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                 occluded, options);
 }
 
 }  // namespace raylanes

@@ -110,8 +110,15 @@ void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* w
   require_rays("trace", rays);
   require_occluded("trace", occluded, what, rays.size());
   require_skip("trace", rays.skip, rays.size());
-  const Traversal traversal = checked_traversal(tree, options);
+  Traversal traversal = checked_traversal(tree, options);
+  traversal.choice.facing = rays.sides(options.facing);
   trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+}
+void trace_segments(const TracedTree& tree, const Segments& segments, std::span<std::uint8_t> occluded,
+                    const TraceOptions& options) {
+  require_points("trace", segments.points);
+  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                 occluded, options);
 }
 
 }  // namespace
@@ -229,10 +236,11 @@ void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occlu
 }
 void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                  const SegmentEnds& ends, const TraceOptions& options) const {
-  require_points("trace", points);
-  const Segments segments{from, points, ends};
-  trace_occluded(traced(), {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                 occluded, options);
+  trace_segments(traced(), {from, points, ends}, occluded, options);
+}
+void TriangleTree::occluded_towards(const Float3& direction, VertexView points,
+                                    std::span<std::uint8_t> occluded, const TraceOptions& options) const {
+  trace_segments(traced(), {direction, points, {}, true}, occluded, options);
 }
 
 Box TriangleTree::bounds() const noexcept {

@@ -61,6 +61,11 @@ void TriangleTree::filtered_occluded_from(const Float3& from, VertexView points,
                                           const SegmentEnds& ends, const TraceOptions& options) const {
   filtered(traced(), filter, options).occluded_from(from, points, occluded, ends);
 }
+void TriangleTree::filtered_occluded_towards(const Float3& direction, VertexView points,
+                                             std::span<std::uint8_t> occluded, const HitFilter& filter,
+                                             const TraceOptions& options) const {
+  filtered(traced(), filter, options).occluded_towards(direction, points, occluded);
+}
 
 Hit TriangleTree::closest_crossing(const Ray& ray, const TraceOptions& options) const {
   require_exact(options);

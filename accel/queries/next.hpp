@@ -67,10 +67,11 @@ struct FilteredCall {
   }
   void occluded_from(const PointOf<T>& from, const VertexRecords<T>& points, std::span<std::uint8_t> occluded,
                      const SegmentEndsOf<T>& ends) const {
-    require_points(call, points);
-    const SegmentsOf<T> segments{from, points, ends};
-    find_occluded({.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                  occluded);
+    find_segments({from, points, ends}, occluded);
+  }
+  void occluded_towards(const PointOf<T>& direction, const VertexRecords<T>& points,
+                        std::span<std::uint8_t> occluded) const {
+    find_segments({direction, points, {}, true}, occluded);
   }
 
  private:
@@ -80,6 +81,11 @@ struct FilteredCall {
   RaySourceOf<T> source_of(const RayArraysOf<T>& rays) const {
     return {.arrays = &rays, .active = options.active, .skip = options.skip};
   }
+  void find_segments(const SegmentsOf<T>& segments, std::span<std::uint8_t> occluded) const {
+    require_points(call, segments.points);
+    find_occluded({.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                  occluded);
+  }
   void find(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Options& by) const {
     trace(rays, hits, by);
     filter_hits<T>(rays, hits, filter, by,
@@ -88,7 +94,9 @@ struct FilteredCall {
                    });
   }
   void find_occluded(const RaySourceOf<T>& rays, const char* what, std::span<std::uint8_t> occluded) const {
-    occluded_by_filter<AnyHit>(call, rays, what, occluded, options,
+    Options by = options;
+    if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
+    occluded_by_filter<AnyHit>(call, rays, what, occluded, by,
                                [&](const HitRecords<AnyHit>& hits, const Options& from_the_first) {
                                  find(rays, hits, from_the_first);
                                });

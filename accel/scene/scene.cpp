@@ -45,7 +45,14 @@ void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* 
   require_rays("scene", rays);
   require_skip("scene", options.skip, rays.size());
   require_occluded("scene", occluded, what, rays.size());
-  trace_all(checked_query(scene, options, mask), rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+  SceneQuery query = checked_query(scene, options, mask);
+  query.choice.facing = rays.sides(options.facing);
+  trace_all(query, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+}
+void trace_segments(const SceneParts& scene, const Segments& segments, std::span<std::uint8_t> occluded,
+                    const TraceOptions& options, std::uint32_t mask) {
+  require_points("scene", segments.points);
+  trace_occluded(scene, {.segments = &segments, .active = options.active}, "points", occluded, options, mask);
 }
 
 // The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
@@ -125,10 +132,11 @@ void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, co
 }
 void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                           const SegmentEnds& ends, const TraceOptions& options, std::uint32_t mask) const {
-  require_points("scene", points);
-  const Segments segments{from, points, ends};
-  trace_occluded(parts(), {.segments = &segments, .active = options.active}, "points", occluded, options,
-                 mask);
+  trace_segments(parts(), {from, points, ends}, occluded, options, mask);
+}
+void Scene::occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                             const TraceOptions& options, std::uint32_t mask) const {
+  trace_segments(parts(), {direction, points, {}, true}, occluded, options, mask);
 }
 
 Box Scene::bounds() const noexcept {

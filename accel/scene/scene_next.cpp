@@ -139,5 +139,10 @@ void Scene::filtered_occluded_from(const Float3& from, VertexView points, std::s
                                    const TraceOptions& options, std::uint32_t mask) const {
   filtered(parts(), filter, options, mask).occluded_from(from, points, occluded, ends);
 }
+void Scene::filtered_occluded_towards(const Float3& direction, VertexView points,
+                                      std::span<std::uint8_t> occluded, const SceneHitFilter& filter,
+                                      const TraceOptions& options, std::uint32_t mask) const {
+  filtered(parts(), filter, options, mask).occluded_towards(direction, points, occluded);
+}
 
 }  // namespace raylanes

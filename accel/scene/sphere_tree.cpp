@@ -124,6 +124,12 @@ void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, const c
                    trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
                  });
 }
+void trace_segments(const SphereTreeArrays* tree, const Segments& segments, std::span<std::uint8_t> occluded,
+                    const VisitOptions& options) {
+  require_points("sphere tree", segments.points);
+  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
+                 occluded, options);
+}
 
 auto filtered(const SphereTreeArrays* tree, const HitFilter& filter, const VisitOptions& options) {
   const auto trace = [tree](const RaySource& rays, const HitView& hits, const VisitOptions& by) {
@@ -218,10 +224,11 @@ void SphereTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occlude
 }
 void SphereTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                const SegmentEnds& ends, const VisitOptions& options) const {
-  require_points("sphere tree", points);
-  const Segments segments{from, points, ends};
-  trace_occluded(tree_.get(), {.segments = &segments, .active = options.active, .skip = options.skip},
-                 "points", occluded, options);
+  trace_segments(tree_.get(), {from, points, ends}, occluded, options);
+}
+void SphereTree::occluded_towards(const Float3& direction, VertexView points,
+                                  std::span<std::uint8_t> occluded, const VisitOptions& options) const {
+  trace_segments(tree_.get(), {direction, points, {}, true}, occluded, options);
 }
 
 void SphereTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
@@ -244,6 +251,11 @@ void SphereTree::filtered_occluded_from(const Float3& from, VertexView points,
                                         std::span<std::uint8_t> occluded, const HitFilter& filter,
                                         const SegmentEnds& ends, const VisitOptions& options) const {
   filtered(tree_.get(), filter, options).occluded_from(from, points, occluded, ends);
+}
+void SphereTree::filtered_occluded_towards(const Float3& direction, VertexView points,
+                                           std::span<std::uint8_t> occluded, const HitFilter& filter,
+                                           const VisitOptions& options) const {
+  filtered(tree_.get(), filter, options).occluded_towards(direction, points, occluded);
 }
 
 Box SphereTree::bounds() const noexcept {

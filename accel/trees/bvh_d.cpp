@@ -137,10 +137,11 @@ void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                          const SegmentEndsD& ends, const TraceOptionsD& options) const {
-  require_points("trace", points);
-  const SegmentsOf<double> segments{from, points, ends};
-  trace_occluded(view_of(tree_), {.segments = &segments, .active = options.active, .skip = options.skip},
-                 "points", occluded, options);
+  trace_segments(view_of(tree_), {from, points, ends}, occluded, options);
+}
+void BvhD::occluded_towards(const Double3& direction, VertexViewD points, std::span<std::uint8_t> occluded,
+                            const TraceOptionsD& options) const {
+  trace_segments(view_of(tree_), {direction, points, {}, true}, occluded, options);
 }
 
 HitD BvhD::closest_crossing(const RayD& ray, const TraceOptionsD& options) const {
@@ -175,6 +176,11 @@ void BvhD::filtered_occluded_from(const Double3& from, VertexViewD points, std::
                                   const HitFilterD& filter, const SegmentEndsD& ends,
                                   const TraceOptionsD& options) const {
   filtered(view_of(tree_), filter, options).occluded_from(from, points, occluded, ends);
+}
+void BvhD::filtered_occluded_towards(const Double3& direction, VertexViewD points,
+                                     std::span<std::uint8_t> occluded, const HitFilterD& filter,
+                                     const TraceOptionsD& options) const {
+  filtered(view_of(tree_), filter, options).occluded_towards(direction, points, occluded);
 }
 
 void BvhD::each_triangle(const TriangleVisitorD& visit) const {

@@ -63,7 +63,7 @@ struct DoubleTreeView {
 template <class T>
 using TreeViewOf = std::conditional_t<std::is_same_v<T, float>, TreeView, DoubleTreeView>;
 
-// Without counters, and without words of what rays share. Scratch is for rays that are traced together.
+// Without counters. Scratch is for rays that are traced together.
 using DoubleBatch = TraceBatchOf<double>;
 // Without counts, counters and scratch.
 using DoubleListBatch = ListBatchOf<double>;
@@ -82,8 +82,9 @@ struct DoubleRayKernels {
   void (*closest_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   void (*any_stream)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*stream_bytes)(std::size_t rays);
-  // Those hits, or whether there are any, of rays that share the first one's origin, at least one; others take more
-  // time. No rule but that hits are nearest, from both sides.
+  // Those hits of rays that share the first one's origin, at least one; or whether there are any, of such rays or of
+  // rays that end at a point, as TraceBatchOf says. Others take more time. No rule but that hits are nearest, from both
+  // sides.
   void (*packet)(const DoubleTreeView& tree, const DoubleBatch& batch);
   std::size_t (*packet_bytes)(std::size_t rays);
   // As PointKernels has them.

@@ -46,7 +46,7 @@ struct TraceBatchOf {
   void* scratch = nullptr;
   // For packets: what their rays share. Those that do not cost more time.
   SharedApex shared_point = SharedApex::origin;
-  Float3 shared_end{};
+  PointOf<T> shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
   Facing facing = Facing::any;        // only rows of QueryKernels look
   // And for each ray the primitive that is not there for it; null: none is left out.

@@ -149,12 +149,16 @@ class BvhD {
   void closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options = {}) const;
 
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0.
-  /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
-  /// `ends`. A triangle that holds one of the points occludes, unless options.skip names it. Differences of two floats
-  /// of similar size are exact in doubles. If a difference overflows, the direction is half the differences, rounded,
-  /// with twice the ends. Throws as closest() of many rays does.
+  /// The ray that begins at points[i] decides. Its direction is the difference of the points, rounded, tmin is
+  /// 1 - ends.end and tmax 1 - ends.start: as in TriangleTree::occluded_from(), with 2^-53 in place of 2^-24.
+  /// Differences of two floats of similar size are exact in doubles: then a triangle that holds one of the points
+  /// occludes, unless options.skip names it. Throws as closest() of many rays does.
   void occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                      const SegmentEndsD& ends = {}, const TraceOptionsD& options = {}) const;
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction hits any triangle, else to 0: shadows of a
+  /// sun, as TriangleTree::occluded_towards(). Throws as closest() of many rays does.
+  void occluded_towards(const Double3& direction, VertexViewD points, std::span<std::uint8_t> occluded,
+                        const TraceOptionsD& options = {}) const;
 
   /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
   /// filter.
@@ -175,6 +179,12 @@ class BvhD {
                      const Filter& filter, const SegmentEndsD& ends = {},
                      const TraceOptionsD& options = {}) const {
     filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilterD> Filter>
+  void occluded_towards(const Double3& direction, VertexViewD points, std::span<std::uint8_t> occluded,
+                        const Filter& filter, const TraceOptionsD& options = {}) const {
+    filtered_occluded_towards(direction, points, occluded, filter, options);
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
   template <std::predicate<const HitD&> Rejects>
@@ -278,6 +288,9 @@ class BvhD {
   void filtered_occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                               const HitFilterD& filter, const SegmentEndsD& ends,
                               const TraceOptionsD& options) const;
+  void filtered_occluded_towards(const Double3& direction, VertexViewD points,
+                                 std::span<std::uint8_t> occluded, const HitFilterD& filter,
+                                 const TraceOptionsD& options) const;
 
   std::unique_ptr<struct BvhDArrays> tree_;  // null: the empty tree
 };

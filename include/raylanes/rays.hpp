@@ -64,7 +64,8 @@ struct RayRecords {
 using RayView = RayRecords<Ray>;
 
 /// The part of a segment that occluded_from() tests, as shares of its length from the shared point on: all of it, both
-/// points included. A point on a surface leaves out its own triangle by TraceOptions::skip.
+/// points included. If `end` is 0.999, it leaves out what is near points[i]. A point on a surface leaves out its own
+/// triangle by TraceOptions::skip.
 template <class T>
 struct SegmentEndsOf {
   T start = 0, end = 1;

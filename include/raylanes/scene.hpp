@@ -199,6 +199,10 @@ class Scene {
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {},
                      std::uint32_t mask = ~0u) const;
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction hits such an instance, else to 0: shadows of the
+  /// sun, as TriangleTree::occluded_towards(). Throws as occluded() does.
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
 
   /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
   /// filter. Spheres and primitives of your own are filtered, too.
@@ -219,6 +223,13 @@ class Scene {
                      const Filter& filter, const SegmentEnds& ends = {}, const TraceOptions& options = {},
                      std::uint32_t mask = ~0u) const {
     filtered_occluded_from(from, points, occluded, filter, ends, options, mask);
+  }
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<SceneHitFilter> Filter>
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const Filter& filter, const TraceOptions& options = {},
+                        std::uint32_t mask = ~0u) const {
+    filtered_occluded_towards(direction, points, occluded, filter, options, mask);
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
   template <std::predicate<const SceneHit&> Rejects>
@@ -270,6 +281,9 @@ class Scene {
   void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                               const SceneHitFilter& filter, const SegmentEnds& ends,
                               const TraceOptions& options, std::uint32_t mask) const;
+  void filtered_occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                                 const SceneHitFilter& filter, const TraceOptions& options,
+                                 std::uint32_t mask) const;
   [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
   [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from

@@ -47,6 +47,10 @@ class SphereTree {
   /// TriangleTree::occluded_from(). Throws as occluded() does.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const VisitOptions& options = {}) const;
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction meets the surface of a sphere, else to 0: as
+  /// TriangleTree::occluded_towards(). Throws as occluded() does.
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const VisitOptions& options = {}) const;
 
   /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
   /// filter.
@@ -66,6 +70,12 @@ class SphereTree {
                      const Filter& filter, const SegmentEnds& ends = {},
                      const VisitOptions& options = {}) const {
     filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilter> Filter>
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const Filter& filter, const VisitOptions& options = {}) const {
+    filtered_occluded_towards(direction, points, occluded, filter, options);
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
   template <std::predicate<const Hit&> Rejects>
@@ -98,6 +108,8 @@ class SphereTree {
   void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                               const HitFilter& filter, const SegmentEnds& ends,
                               const VisitOptions& options) const;
+  void filtered_occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                                 const HitFilter& filter, const VisitOptions& options) const;
   friend class Scene;
   std::unique_ptr<struct SphereTreeArrays> tree_;  // null: none
 };

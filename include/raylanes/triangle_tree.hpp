@@ -151,11 +151,19 @@ class TriangleTree {
   void closest_crossing(const RayArrays& rays, HitView hits, const TraceOptions& options = {}) const;
 
   /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], else to 0: shadows of one light.
-  /// The rays begin at `from`, and their directions are the differences of the points, rounded; tmin and tmax are the
-  /// `ends`. If a difference overflows, the direction is half the differences, rounded, with twice the ends.
-  /// Such rays are traced fastest. `active` is a mask of points. Throws as closest() of many rays does.
+  /// The ray that begins at points[i] decides. Its direction is the difference of the points, rounded, tmin is
+  /// 1 - ends.end and tmax 1 - ends.start, less than 1 if ends.start is positive. So a segment begins at its point
+  /// exactly, however far the light is. Along each axis it ends within 2^-24 of that difference from `from`. If a
+  /// difference overflows, the direction is half of the differences, rounded, with twice tmin and tmax. If both points
+  /// are equal, the result is 0. options.facing is meant as `from` sees it. `active` is a mask of points. Such
+  /// rays are traced fastest. Throws as closest() of many rays does.
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const SegmentEnds& ends = {}, const TraceOptions& options = {}) const;
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction hits any triangle, else to 0: shadows of a sun.
+  /// The direction needs no unit length. tmin is 0 and tmax infinity; options.facing is as for rays. `active` is a mask
+  /// of points. Throws as closest() of many rays does.
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const TraceOptions& options = {}) const;
 
   /// Returns the closest point of the triangles; ties in distance go to the lowest primitive index. ClosestPoint has
   /// the error bound. The bytes do not depend on ISA path, tree, builder or threads.
@@ -248,11 +256,18 @@ class TriangleTree {
     filtered_occluded(rays, occluded, filter, options);
   }
   /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
+  /// The filter sees hits of the ray that begins at points[i], nearest to the point first.
   template <std::convertible_to<HitFilter> Filter>
   void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                      const Filter& filter, const SegmentEnds& ends = {},
                      const TraceOptions& options = {}) const {
     filtered_occluded_from(from, points, occluded, filter, ends, options);
+  }
+  /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
+  template <std::convertible_to<HitFilter> Filter>
+  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                        const Filter& filter, const TraceOptions& options = {}) const {
+    filtered_occluded_towards(direction, points, occluded, filter, options);
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
   template <std::predicate<const Hit&> Rejects>
@@ -303,6 +318,8 @@ class TriangleTree {
   void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                               const HitFilter& filter, const SegmentEnds& ends,
                               const TraceOptions& options) const;
+  void filtered_occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
+                                 const HitFilter& filter, const TraceOptions& options) const;
   // A ray, or a point, with any options.
   [[gnu::cold, gnu::visibility("hidden")]] Hit closest_by_options(const Ray& ray,
                                                                   const TraceOptions& options) const;

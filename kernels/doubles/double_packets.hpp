@@ -1,5 +1,5 @@
-// Rays of doubles that share an origin, as packets: nodes and frusta by floats in the frame of the tree, triangles by
-// planes in doubles, and by the ray itself where planes do not decide.
+// Rays of doubles that share an origin, or end at a point, as packets: nodes and frusta by floats in the frame of the
+// tree, triangles by planes in doubles, and by the ray itself where planes do not decide.
 #pragma once
 
 #include "../traverse/packet/apex_triangles.hpp"
@@ -30,6 +30,7 @@ struct alignas(64) DoublePacketRays : PacketRays {
       for (int lane = 0; lane < N; ++lane) rows[lane] = batch.doubles + index(row, first + lane);
       V numbers[row_floats];
       load_rows(rows, numbers);
+      batch.look_from_apex(numbers);
       const V* const d = numbers + 4;
       V z = d[frame.axes.order[2]] * V(static_cast<double>(frame.sign));
       V largest = max(max(abs(d[0]), abs(d[1])), abs(d[2]));
@@ -38,8 +39,9 @@ struct alignas(64) DoublePacketRays : PacketRays {
       (z * V(batch.scale)).store(to.size_z + first);
       (as<double>(as<std::uint64_t>(largest) & Words(exponent_bits)) * V(batch.scale))
           .store(to.scale + first);
-      V end = min(numbers[7], V(largest_double));
-      numbers[3].store(to.begin + first), end.store(to.t_lo + first), end.store(to.end + first);
+      V end = min(numbers[7], V(largest_double)), error(batch.t_error());
+      (numbers[3] - error).store(to.begin + first);
+      (end - error).store(to.t_lo + first), (end + error).store(to.end + first);
       Words(no_leaf_triangle).store(to.leaf_triangle + first);
     }
   }
@@ -100,7 +102,8 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
 
   void begin() {
     for (std::size_t k = 0; k < 3; ++k)
-      apex_[k] = batch_.origin[static_cast<std::size_t>(frame_.axes.order[k])] * batch_.scale;
+      apex_[k] = batch_.apex[static_cast<std::size_t>(frame_.axes.order[k])] * batch_.scale;
+    frame_.apex_offset = frame_.past = batch_.apex_offset();
     for (int row = 0; row < rays_.vectors; ++row) rays_.begin(batch_, row, frame_);
   }
   void trace_single(std::size_t index) { batch_.trace_alone(index); }
@@ -160,7 +163,9 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
         continue;
       }
       const auto range = rays_.state(row, first);
-      const auto decided = planes.decide(triangle, side, x, y, V::load(of.size_z + first), range, range);
+      auto surely = range;
+      surely.tmin = range.tmin + V(2 * batch_.t_error());
+      const auto decided = planes.decide(triangle, side, x, y, V::load(of.size_z + first), range, surely);
       const std::uint32_t hit = bits(decided.certain) & rays;
       rays_.keep(row, first, hit, decided, leaf_triangle);
       undecided |= (bits(decided.undecided) & rays) << first, certain |= hit << first;
@@ -218,12 +223,13 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
   return moved_rays_at + ((rays < max_sorted_rays ? rays : max_sorted_rays) + W) * sizeof(Ray);
 }
 
-// Rays that share the first one's origin; others are traced singly.
+// Rays that share the first one's origin, or end at a point; others are traced singly.
 [[maybe_unused]] void packet_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const Double3& origin = batch.rays[0].origin;
-  const FrameRay probe(tree, {origin, 0.0, {1.0, 0.0, 0.0}, 1.0}, 0.0);
+  const bool ends_there = batch.shared_point == SharedApex::end;
+  const Double3 apex = ends_there ? batch.shared_end : batch.rays[0].origin;
+  const FrameRay probe(tree, {apex, 0.0, {1.0, 0.0, 0.0}, 1.0}, 0.0);
   const bool is_shared = probe.may_hit && probe.is_usual();
-  DoublePacketBatch rays{{tree, batch}, origin, is_shared ? power_of_two(tree.frame.power) : 0.0};
+  DoublePacketBatch rays{{tree, batch}, apex, is_shared ? power_of_two(tree.frame.power) : 0.0, ends_there};
   TreeView nodes = tree.tree;
   nodes.padding = probe.more;
   auto& scratch = *static_cast<PacketScratch<DoublePacketRays>*>(batch.scratch);

@@ -16,7 +16,6 @@ template <>
 struct CallTypesOf<float> {
   using Tree = TriangleTree;
   using Crossing = raylanes::Crossing;
-  using Ends = SegmentEnds;
   using Options = TraceOptions;
   using ClosestOptions = ClosestPointOptions;
   using DistanceOptions = SignedDistanceOptions;
@@ -25,7 +24,6 @@ template <>
 struct CallTypesOf<double> {
   using Tree = BvhD;
   using Crossing = CrossingD;
-  using Ends = SegmentEndsD;
   using Options = TraceOptionsD;
   using ClosestOptions = ClosestPointOptionsD;
   using DistanceOptions = SignedDistanceOptionsD;

@@ -44,16 +44,19 @@ void occluded_in_scene(const SharedScene& shared, const py::array& rays, const p
 }
 
 void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::array& points,
-                      const py::array& occluded, const std::array<float, 2>& ends, const py::tuple& how,
+                      const py::array& occluded, const Ends<float>& ends, const py::tuple& how,
                       const py::object& active, std::uint32_t mask, const py::object& filter) {
   const auto to_points = vertices_of<float>(points);
-  const SegmentEnds between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<float>(how, active, to_points.count);
-  filtered_query<SceneHit>(shared, options, how[7], to_points.count, filter,
-                           [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
-                             scene.occluded_from(from, to_points, to, filters..., between, heard, mask);
-                           });
+  filtered_query<SceneHit>(
+      shared, options, how[7], to_points.count, filter,
+      [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
+        if (ends)
+          scene.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard, mask);
+        else
+          scene.occluded_towards(from, to_points, to, filters..., heard, mask);
+      });
 }
 
 // As _scene_queries.py has it.

@@ -107,16 +107,19 @@ inline void occluded_by_spheres(const SharedSpheres& shared, const py::array& ra
 }
 
 inline void shadows_of_spheres(const SharedSpheres& shared, const Float3& from, const py::array& points,
-                               const py::array& occluded, const std::array<float, 2>& ends,
-                               const py::tuple& how, const py::object& active, const py::object& filter) {
+                               const py::array& occluded, const Ends<float>& ends, const py::tuple& how,
+                               const py::object& active, const py::object& filter) {
   const auto to_points = vertices_of<float>(points);
-  const SegmentEnds between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = visit_options(how, active, to_points.count);
-  filtered_query<Hit>(shared, options, how[7], to_points.count, filter,
-                      [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
-                        state.tree.occluded_from(from, to_points, to, filters..., between, heard);
-                      });
+  filtered_query<Hit>(
+      shared, options, how[7], to_points.count, filter,
+      [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
+        if (ends)
+          state.tree.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
+        else
+          state.tree.occluded_towards(from, to_points, to, filters..., heard);
+      });
 }
 
 }  // namespace raylanes::python

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -177,18 +178,25 @@ void occluded(const SharedTree<T>& shared, const py::array& rays, const py::arra
                            });
 }
 
+// Segments with these ends, from points to one; or rays from the points, in a direction if there are no ends.
+template <class T>
+using Ends = std::optional<std::array<T, 2>>;
+
 template <class T>
 void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, const py::array& points,
-                   const py::array& occluded, const std::array<T, 2>& ends, const py::tuple& how,
+                   const py::array& occluded, const Ends<T>& ends, const py::tuple& how,
                    const py::object& active, const py::object& filter) {
   const auto to_points = vertices_of<T>(points);
-  const typename CallTypesOf<T>::Ends between{ends[0], ends[1]};
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, to_points.count);
-  filtered_query<HitOf<T>>(shared, options, how[7], to_points.count, filter,
-                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
-                             tree.occluded_from(from, to_points, to, filters..., between, heard);
-                           });
+  filtered_query<HitOf<T>>(
+      shared, options, how[7], to_points.count, filter,
+      [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+        if (ends)
+          tree.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
+        else
+          tree.occluded_towards(from, to_points, to, filters..., heard);
+      });
 }
 
 // The corners of triangles by index, as rows of nine numbers.

@@ -258,6 +258,10 @@ class _Tree(_Stored):
                       filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ..., test: _Test = ...,
                       grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ...,
                       skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> _Bools: ...
+    def occluded_towards(self, direction: ArrayLike, points: ArrayLike, *, filter: _Filter[Hits] | None = ...,
+                         out: Any = ..., active: _Mask = ..., test: _Test = ..., grade: _Grade = ...,
+                         mode: _Mode = ..., hint: _Hint = ..., facing: _Facing = ..., skip: _Skip = ...,
+                         threads: int = ..., progress: _Progress = ...) -> _Bools: ...
     def all_hits(self, rays: ArrayLike, *, max_count: int | None = ..., facing: _Facing = ..., skip: _Skip = ...,
                  active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> Lists[Hits]: ...
     def crossings(self, rays: ArrayLike, *, max_count: int | None = ..., facing: _Facing = ..., skip: _Skip = ...,
@@ -362,3 +366,8 @@ class Scene(_Stored):
                       test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
                       facing: _Facing = ..., skip: _Skip = ..., threads: int = ...,
                       progress: _Progress = ...) -> _Bools: ...
+    def occluded_towards(self, direction: ArrayLike, points: ArrayLike, *, mask: int = ...,
+                         filter: _Filter[SceneHits] | None = ..., out: Any = ..., active: _Mask = ...,
+                         test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
+                         facing: _Facing = ..., skip: _Skip = ..., threads: int = ...,
+                         progress: _Progress = ...) -> _Bools: ...

@@ -5,7 +5,7 @@ import numpy as np
 from ._answer import Answer
 from ._arrays import count_dtype, packed, ray_rows
 from ._scalars import count, function, threads_of, word
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped
 from .hits import Crossings, Hits, Lists, Stretches
 from .paths import chosen
 
@@ -149,7 +149,9 @@ class RayQueries:
                       progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
-        This is the fastest way to trace shadows.
+        This is the fastest way to trace shadows. Segments begin at `points` exactly, at any distance of the light:
+        the ray from a point along the difference to `origin`, rounded, decides. If both points are equal, the result is
+        False. occluded_towards() takes the direction of a sun.
 
         Parameters
         ----------
@@ -161,8 +163,10 @@ class RayQueries:
             The part of each segment to test, as shares of its length from `origin` on: all of it by default, both
             points included. A point on a surface leaves out its own triangle by `skip`.
         filter : function, optional
-            As in closest(); indices are rows of the flattened points.
-        out, test, grade, mode, hint, facing, skip, threads, progress
+            As in closest(); indices are rows of the flattened points, and t is 0 at the point and 1 at `origin`.
+        facing : {"any", "front", "back"}, default "any"
+            Triangles to count, by the side that `origin` sees.
+        out, test, grade, mode, hint, skip, threads, progress
             As in closest().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -181,6 +185,37 @@ class RayQueries:
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(
                                 *given[:-1], asked, given[-1], self._filter(filter)))
+
+    def occluded_towards(self, direction, points, *, filter=None, out=None, active=None, test="exact",
+                         grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
+                         progress=None):
+        """Find out whether anything lies in one direction, such as that of the sun, from each of many points.
+
+        Parameters
+        ----------
+        direction : array of float, shape (3,)
+            The direction in which all rays go, of any length, such as that towards the sun.
+        points : array of float, shape (..., 3)
+            The points where rays begin.
+        filter, out, test, grade, mode, hint, facing, skip, threads, progress
+            As in closest(); indices are rows of the flattened points.
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> tree.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
+        return shadows_towards(self._numbers, direction, points, out, active,
+                               lambda *given: self._tree.occluded_from(
+                                   *given[:-1], asked, given[-1], self._filter(filter)))
 
     def all_hits(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.

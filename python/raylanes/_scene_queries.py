@@ -4,7 +4,7 @@ import numpy as np
 
 from ._arrays import SCENES, unsigned
 from ._scalars import count
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped_in_scene
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped_in_scene
 from .scene_hits import SceneHits
 
 EVERY_BIT = 0xFFFFFFFF
@@ -152,7 +152,9 @@ class SceneQueries:
             The other ends.
         start, end : float
             As in Bvh.occluded_from(): 0 and 1 by default.
-        mask, filter, out, test, grade, mode, hint, facing, skip, threads, progress
+        facing : {"any", "front", "back"}, default "any"
+            Triangles to count, by the side that `origin` sees.
+        mask, filter, out, test, grade, mode, hint, skip, threads, progress
             As in closest().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -170,6 +172,37 @@ class SceneQueries:
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
+            *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
+
+    def occluded_towards(self, direction, points, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact",
+                         grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
+                         progress=None):
+        """Find out whether anything lies in one direction, such as that of the sun, from each of many points.
+
+        Parameters
+        ----------
+        direction : array of float, shape (3,)
+            The direction in which all rays go, of any length, such as that towards the sun.
+        points : array of float, shape (..., 3)
+            The points where rays begin.
+        mask, filter, out, test, grade, mode, hint, facing, skip, threads, progress
+            As in closest().
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> scene.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        bits_of_mask = _mask(mask)
+        return shadows_towards(SCENES, direction, points, out, active, lambda *given: self._tree.occluded_from(
             *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
 
     def geometry_of(self, instance):

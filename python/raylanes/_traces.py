@@ -27,12 +27,21 @@ def shadows(numbers, rays, out, active, ask):
 
 def shadows_from(numbers, origin, points, ends, out, active, ask):
     """Whether anything lies on segments: ask(origin, rows of points, bytes to write, ends, bits of active points)."""
-    given, shape = rows("points", points, 3, numbers.real)
-    light = vertices_of("origin", np.reshape(origin, (1, -1)), numbers.real)[0]
-    answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
     start, end = ends
-    ask(light, given, answer.rows.view(np.uint8),
-        (real("start", start, numbers.real), real("end", end, numbers.real)), packed(active, shape))
+    ends = real("start", start, numbers.real), real("end", end, numbers.real)
+    return _shadows_of("origin", numbers, origin, points, ends, out, active, ask)
+
+
+def shadows_towards(numbers, direction, points, out, active, ask):
+    """Whether anything lies in a direction: ask() as in shadows_from(), without ends."""
+    return _shadows_of("direction", numbers, direction, points, None, out, active, ask)
+
+
+def _shadows_of(name, numbers, light, points, ends, out, active, ask):
+    given, shape = rows("points", points, 3, numbers.real)
+    light = vertices_of(name, np.reshape(light, (1, -1)), numbers.real)[0]
+    answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
+    ask(light, given, answer.rows.view(np.uint8), ends, packed(active, shape))
     return answer.finish()
 
 

@@ -6,7 +6,7 @@ from . import _native
 from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
 from ._scalars import threads_of, word
 from ._stored import Copied
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, skipped
+from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped
 from .hits import Hits
 
 
@@ -193,6 +193,35 @@ class SphereTree(Copied):
         """
         asked = _asked(threads, progress, skip)
         return shadows_from(FLOATS, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
+            *given[:-1], asked, given[-1], filter_of(filter, Hits, FLOATS.hit)))
+
+    def occluded_towards(self, direction, points, *, filter=None, out=None, active=None, skip=None, threads=0,
+                         progress=None):
+        """Find out whether the surface of a sphere lies in one direction from each of many points.
+
+        Parameters
+        ----------
+        direction : array of float, shape (3,)
+            The direction in which all rays go, of any length, such as that towards the sun.
+        points : array of float, shape (..., 3)
+            The points where rays begin.
+        filter, out, skip, threads, progress
+            As in closest().
+        active : array of bool, optional
+            The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each point in shadow, in the shape of points without their last axis.
+
+        Examples
+        --------
+        >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
+        array([ True, False])
+        """
+        asked = _asked(threads, progress, skip)
+        return shadows_towards(FLOATS, direction, points, out, active, lambda *given: self._tree.occluded_from(
             *given[:-1], asked, given[-1], filter_of(filter, Hits, FLOATS.hit)))
 
     def __repr__(self):

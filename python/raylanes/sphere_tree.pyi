@@ -28,3 +28,6 @@ class SphereTree(_Copied):
     def occluded_from(self, origin: ArrayLike, points: ArrayLike, *, start: float = ..., end: float = ...,
                       filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ..., skip: _Skip = ...,
                       threads: int = ..., progress: _Progress = ...) -> _Bools: ...
+    def occluded_towards(self, direction: ArrayLike, points: ArrayLike, *, filter: _Filter[Hits] | None = ...,
+                         out: Any = ..., active: _Mask = ..., skip: _Skip = ..., threads: int = ...,
+                         progress: _Progress = ...) -> _Bools: ...

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "../support/filtered.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/message_of.hpp"
@@ -163,8 +164,7 @@ TEST(DoubleCalls, occluded_from_is_that_of_segments) {
     points.push_back(ray.origin);
     const SegmentEndsD ends;
     EXPECT_TRUE(ends.start == 0 && ends.end == 1);
-    RayD& segment = segments.emplace_back(RayD{light, ends.start, ray.origin, ends.end});
-    for (std::size_t k = 0; k < 3; ++k) segment.direction[k] -= light[k];
+    segments.push_back(segment_to<double>(light, ray.origin));
   }
   std::vector<std::uint8_t> from(points.size()), along(points.size());
   sample.tree.occluded_from(light, points, from);
@@ -207,8 +207,8 @@ TEST(DoubleCalls, segments_longer_than_the_largest_double) {
     tree.occluded_from(from, points, occluded, ends);
     std::size_t hits = 0, overflows = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      RayD ray{from, 2 * ends.start, {}, 2 * ends.end};
-      for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = points[i][k] / 2 - from[k] / 2;
+      RayD ray{points[i], 2 * (1 - ends.end), {}, 2 * (1 - ends.start)};
+      for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = from[k] / 2 - points[i][k] / 2;
       const bool is_hit = !exact_double_hits(mesh, ray).empty();
       ASSERT_EQ(occluded[i], is_hit ? 1 : 0) << i;
       hits += is_hit ? 1 : 0, overflows += std::isinf(points[i][0] - from[0]) ? 1 : 0;

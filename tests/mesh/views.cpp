@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "../support/filtered.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -106,9 +107,7 @@ TEST_F(BatchViews, segments_from_a_shared_point) {
   std::vector<std::uint8_t> expected_of, active((rays.size() + 7) / 8);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     points.push_back(rays[i].origin);
-    const Float3& p = points[i];
-    const Ray ray{light, ends.start, {p[0] - light[0], p[1] - light[1], p[2] - light[2]}, ends.end};
-    expected_of.push_back(bvh.occluded(ray) ? 1 : 0);
+    expected_of.push_back(bvh.occluded(segment_to<float>(light, points[i], ends)) ? 1 : 0);
     if (i % 5 != 0) active[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
   }
   EXPECT_GT(std::count(expected_of.begin(), expected_of.end(), 1), 100);

@@ -80,9 +80,10 @@ def test_hits_of_one_side(expected, kind, facing, side):
         assert counts["crossings"].tolist() == [len(c) for c in crossed]
         assert (counts["winding"] == side * counts["crossings"].astype(int)).all()
     points = rays.view(np.float32).reshape(-1, 8)[:, :3]
-    assert same(tree.occluded_from([0, 0, 9], points, facing=facing),
-                tree.occluded(raylanes.rays([0, 0, 9], points - np.float32([0, 0, 9]), tmax=1),
-                              facing=facing))
+    to_light, other = raylanes.rays(points, np.float32([0, 0, 9]) - points, tmax=1), {"front": "back", "back": "front"}
+    assert same(tree.occluded_from([0, 0, 9], points, facing=facing), tree.occluded(to_light, facing=other[facing]))
+    assert same(tree.occluded_towards([1, 2, 9], points, facing=facing),
+                tree.occluded(raylanes.rays(points, [1, 2, 9]), facing=facing))
 
 
 def test_a_side_is_a_name_and_of_the_exact_test():
@@ -212,7 +213,7 @@ def test_shadows_from_a_point():
     tree, light = raylanes.Bvh(*sphere()), np.array([3, 0, 0], np.float32)
     points = random_rays(7, 3000)["origin"]
     dark = tree.occluded_from(light, points, end=1.0)
-    assert same(dark, tree.occluded(raylanes.rays(light, points - light, 0, 1))) and 0 < dark.mean() < 1
+    assert same(dark, tree.occluded(raylanes.rays(points, light - points, 0, 1))) and 0 < dark.mean() < 1
     assert same(dark, tree.occluded_from(light, points, end=1.0, hint="shared_origin", mode="single"))
 
 

@@ -39,6 +39,7 @@ def trees_calls():
         yield tree.occluded, (rays,), {**traced, **common, "out": np.zeros(4, bool)}
         yield tree.occluded_from, (points[0], points), {**traced, **common, "start": 0.0, "end": 1.0,
                                                         "out": np.zeros(4, bool)}
+        yield tree.occluded_towards, (points[0], points), {**traced, **common, "out": np.zeros(4, bool)}
         yield tree.all_hits, (rays,), {**common, "max_count": 2, "facing": "any"}
         yield tree.crossings, (rays,), {**common, "max_count": 2, "facing": "any"}
         yield tree.count_crossings, (rays,), {**common, "facing": "any", "out": np.zeros(4, raylanes.count_dtype)}
@@ -67,6 +68,7 @@ def doubles_calls():
     yield tree.closest, (rays,), {**common, "test": "exact", "mode": "single", "after": tree.closest(rays),
                                   "out": np.zeros(4, raylanes.double_hit_dtype)}
     yield tree.occluded_from, (points[0], points), {**common, "start": 0.0, "end": 1.0}
+    yield tree.occluded_towards, (points[0], points), common
     yield tree.all_hits, (rays,), {**common, "max_count": 2, "facing": "any"}
     yield tree.locate, (points,), {**common, "rule": "parity", "out": np.zeros(4, np.uint8)}
     yield tree.winding_numbers, (points,), {**common, "accuracy": 1e-6, "out": np.zeros(4)}
@@ -89,6 +91,7 @@ def scenes_calls():
     yield spheres.closest, (rays,), {**of_spheres, "after": spheres.closest(rays)}
     yield spheres.occluded, (rays,), of_spheres
     yield spheres.occluded_from, (points[0], points), {**of_spheres, "start": 0.0, "end": 1.0}
+    yield spheres.occluded_towards, (points[0], points), of_spheres
     yield changed.add, (tree,), {}
     yield changed.replace, (0, tree), {}
     yield changed.refit, (0, cube_vertices, cube_faces), {"threads": 1}
@@ -105,6 +108,7 @@ def scenes_calls():
     yield scene.occluded, (rays,), {**traced_and_filtered, "out": np.zeros(4, bool)}
     yield scene.occluded_from, (points[0], points), {**traced_and_filtered, "start": 0.0, "end": 1.0,
                                                            "out": np.zeros(4, bool)}
+    yield scene.occluded_towards, (points[0], points), {**traced_and_filtered, "out": np.zeros(4, bool)}
     hits = scene.closest(rays)
     yield scene.save, ("tree",), {}
     yield raylanes.Scene.load, ("scene",), {}

@@ -257,9 +257,7 @@ TEST(ChosenTriangles, of_shadows_and_filters) {
   std::vector<Ray> to_points;
   for (const Ray& ray : rays) {
     points.push_back(ray.origin);
-    to_points.push_back({light, 0, {}, 1});
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      to_points.back().direction[axis] = ray.origin[axis] - light[axis];
+    to_points.push_back(segment_to<float>(light, ray.origin));
   }
   const std::vector<std::uint32_t> skip = some_skips(mesh, to_points);
   const ExpectedOfChosen shadows[] = {{mesh, to_points, Facing::front},
@@ -270,7 +268,10 @@ TEST(ChosenTriangles, of_shadows_and_filters) {
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       const TraceOptions options{.path = path, .facing = in_shadow.facing, .skip = in_shadow.skip};
       std::vector<std::uint8_t> occluded(points.size());
-      tree.occluded_from(light, points, occluded, {0, 1}, options);
+      TraceOptions from_light = options;  // which sees the other side
+      if (options.facing != Facing::any)
+        from_light.facing = options.facing == Facing::front ? Facing::back : Facing::front;
+      tree.occluded_from(light, points, occluded, {0, 1}, from_light);
       EXPECT_EQ(occluded, in_shadow.occluded);
       std::vector<Hit> hits(rays.size());
       tree.closest(rays, hits, reject_even<Hit>, options);

@@ -103,6 +103,8 @@ void trace_all(const Tree& tree, const Rays& rays, const Points& points, const P
   tree.closest(rays, behind_hits, reject_some, options);
   tree.occluded(rays, occluded.span(), options);
   tree.occluded(rays, occluded.span(), reject_some, options);
+  tree.occluded_towards(from, points, occluded.span(), options);
+  tree.occluded_towards(from, points, occluded.span(), reject_some, options);
   tree.occluded_from(from, points, occluded.span(), {}, options);
   tree.occluded_from(from, points, occluded.span(), reject_some, {}, options);
   PagedArray<AnyHit>::each([&](std::size_t i) { ASSERT_LE(occluded[i], 1); });

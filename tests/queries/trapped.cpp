@@ -77,6 +77,8 @@ void ask_all(const Tree& tree, const std::vector<Ray>& rays, const Path* path, i
       tree.closest(rays, hits, options);
       tree.occluded(rays, occluded, options);
       tree.occluded_from({0.25f, 0.5f, 3}, points, occluded, {}, options);
+      tree.occluded_from({3e38f, -3e38f, 1e-40f}, points, occluded, {}, options);
+      tree.occluded_towards({3e38f, 1e-40f, 0}, points, occluded, options);
     }
   }
   for (std::size_t i = 0; i < 50; ++i) {

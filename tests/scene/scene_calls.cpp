@@ -113,8 +113,7 @@ TEST(Scene, says_what_lies_between_a_point_and_others) {
   std::vector<Ray> segments;
   for (const Ray& ray : rays) {
     points.push_back(ray.origin);
-    segments.push_back({rays[0].origin, ends.start, ray.origin, ends.end});
-    for (std::size_t axis = 0; axis < 3; ++axis) segments.back().direction[axis] -= rays[0].origin[axis];
+    segments.push_back(segment_to<float>(rays[0].origin, ray.origin, ends));
   }
   std::vector<std::uint8_t> answers(points.size(), 7), expected(points.size(), 7);
   parts.scene.occluded_from(rays[0].origin, points, answers, ends);

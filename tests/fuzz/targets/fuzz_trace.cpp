@@ -16,6 +16,7 @@
 #include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../queries/query_oracle.hpp"
+#include "../../support/filtered.hpp"
 #include "../../support/random_input.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
@@ -135,7 +136,8 @@ void expect_possible(const Ray& ray, const Hit& hit, std::uint8_t occluded, std:
   }
 }
 
-// From the first ray's origin to the origins of all: as single rays between these points, with the exact test.
+// From the first ray's origin to the origins of all, and in its direction: as single rays from these points, with the
+// exact test.
 void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const SegmentEnds& ends,
                      TraceOptions options) {
   static Fence fence(max_rays);
@@ -145,17 +147,24 @@ void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const 
   fence.expect_intact("occluded segments");
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Float3 to = rays[i].origin;
-    Ray ray{from, ends.start, to, ends.end};
-    for (std::size_t axis = 0; axis < 3; ++axis) ray.direction[axis] -= from[axis];
+    Ray ray = segment_to<float>(from, to, ends);
     if (!std::ranges::all_of(ray.direction, [](float x) { return std::isfinite(x); })) {
       for (std::size_t axis = 0; axis < 3; ++axis)
-        ray.direction[axis] = static_cast<float>(0.5 * (double{to[axis]} - double{from[axis]}));
+        ray.direction[axis] = static_cast<float>(0.5 * (double{from[axis]} - double{to[axis]}));
       ray.tmin *= 2, ray.tmax *= 2;
     }
     if (occluded[i] > 1 ||
         (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, options)))
       fail("segment " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));
   }
+  const Float3 direction = rays[0].direction;
+  tree.occluded_towards(direction, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, options);
+  fence.expect_intact("occluded in a direction");
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (occluded[i] > 1 ||
+        (options.test == TriangleTest::exact &&
+         (occluded[i] != 0) != tree.occluded(make_ray(rays[i].origin, direction), options)))
+      fail("point " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));
 }
 
 // With origins near that of the first one: their closest points are looked for together.

@@ -121,9 +121,11 @@ def test_trees_take_filters_in_every_query(kind, dtype):
     assert [hit.item() if hit.hit else None for hit in later] == [
         kept_of(layers[1:], i) for i, layers in enumerate(tree.all_hits(rays))]
     points = rays["origin"] + 2 * rays["direction"]
-    segments = raylanes.rays(points[0], points - points[0], tmax=1, dtype=dtype)
+    segments = raylanes.rays(points, points[0] - points, tmax=1, dtype=dtype)
     dark = tree.occluded_from(points[0], points, filter=by_parity)
     assert dark.tolist() == tree.occluded(segments, filter=by_parity).tolist() and dark.any()
+    sun = tree.occluded_towards(points[1], points, filter=by_parity)
+    assert sun.tolist() == tree.occluded(raylanes.rays(points, points[1], dtype=dtype), filter=by_parity).tolist()
     with pytest.raises(TypeError, match="^filter: a function is needed, not str$"):
         tree.closest(rays, filter="all")
 
@@ -145,4 +147,5 @@ def test_spheres_have_two_hits_and_take_filters():
         assert traced.occluded_from([0, 0, 5], [[0, 0, 0], [0, 0, 2.5]]).tolist() == [True, False]
         assert traced.occluded_from([0, 0, 5], [[0, 0, 0], [0, 0, -9]],
                                     filter=lambda indices, hits: hits.primitive < 2).tolist() == [False, True]
+        assert traced.occluded_towards([0, 0, 5], [[0, 0, 0], [0, 0, 2.5]]).tolist() == [True, False]
         assert traced.closest(ray, after=traced.closest(ray)).t.tolist() == [4]

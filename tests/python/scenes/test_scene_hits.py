@@ -59,12 +59,14 @@ def test_sides_are_those_of_the_part(expected, facing):
 def test_shadows_from_a_point(expected):
     for _, scene, _ in expected:
         light, points = np.float32([3, 2, 1]), random_rays(7, 400)["origin"]
-        rays = raylanes.rays(light, points - light, 0.25, 0.75, dtype=np.float32)
+        rays = raylanes.rays(points, light - points, 0.25, 0.75, dtype=np.float32)
         for mask in (0xFFFFFFFF, 0b10):
             dark = scene.occluded_from(light, points, start=0.25, end=0.75, mask=mask)
             assert dark.tolist() == scene.occluded(rays, mask=mask).tolist() and 0 < dark.mean() < 1
+        sun = scene.occluded_towards(light, points)
+        assert sun.tolist() == scene.occluded(raylanes.rays(points, light, dtype=np.float32)).tolist() and sun.any()
         whole = scene.occluded_from(light, points.reshape(20, 20, 3))
-        assert whole.tolist() == scene.occluded(raylanes.rays(light, points - light, 0, 1 - 2.0**-12,
+        assert whole.tolist() == scene.occluded(raylanes.rays(points, light - points, 0, 1,
                                                               dtype=np.float32)).reshape(20, 20).tolist()
 
 
