@@ -6,7 +6,8 @@
 using namespace example;
 
 // The next exit of a solid from the triangle where the ray came in, no farther than `limit`; a miss if there is none.
-// An edge that the ray only touches is no exit.
+// An edge that the ray only touches is no exit. Cells that share faces need the exits of docs/crossings.md, because
+// particles may enter a cell that their ray only touches.
 template <class Tree, class Ray, class Hit, class T>
 auto ray_fire(const Tree& solid, Ray ray, const Hit& here, T limit) {
   ray.tmax = limit;

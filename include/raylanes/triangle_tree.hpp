@@ -138,7 +138,8 @@ class TriangleTree {
   /// edge or corner, by position, are summed: as many of them count as the sum is large, of its sign, with the lowest
   /// primitives. So an edge between two triangles counts once, or not at all if the ray only touches it. Sides sum over
   /// all triangles but the skipped one, whatever options.facing is. If all of them have the same corners, all count.
-  /// A ray in the plane of a triangle, or from a point on an edge of it, does not pass it.
+  /// A ray in the plane of a triangle, or from a point on an edge of it, does not pass it. A cell that is only touched
+  /// at a corner has no passage: particles go through cells that share faces by crossings(), as docs/crossings.md says.
   /// Takes all options of closest(), `after` too. Throws as closest() does, and std::invalid_argument for another test
   /// than TriangleTest::exact.
   Hit closest_crossing(const Ray& ray, const TraceOptions& options = {}) const;
