@@ -25,7 +25,9 @@ raylanes_ray_options ray_defaults() {
           .active = nullptr,
           .skip = nullptr,
           .skip_stride = 0,
-          .max_count = std::numeric_limits<std::size_t>::max()};
+          .max_count = std::numeric_limits<std::size_t>::max(),
+          .after = nullptr,
+          .after_stride = 0};
 }
 
 raylanes_point_options point_defaults() {

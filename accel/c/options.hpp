@@ -45,6 +45,10 @@ Options ray_options(const raylanes_ray_options* given, std::size_t count) {
   if (c.skip != nullptr)
     options.skip = {c.skip, count,
                     checked_stride("skip", c.skip, count, c.skip_stride, sizeof(std::uint32_t))};
+  if constexpr (requires { options.after; })
+    if (c.after != nullptr)
+      options.after = {c.after, count,
+                       checked_stride("after", c.after, count, c.after_stride, sizeof(options.after[0]))};
   if constexpr (requires { options.max_count; })
     options.max_count = static_cast<std::uint32_t>(
         std::min<std::size_t>(c.max_count, std::numeric_limits<std::uint32_t>::max()));

@@ -2,7 +2,7 @@
 //   RAYLANES_HANDLE        what C holds: raylanes_bvh
 //   RAYLANES_CALL(name)    a function: raylanes_bvh_closest
 //   RAYLANES_RECORD(name)  a record: raylanes_hit
-//   RAYLANES_OPTIONS(name) options of C++: TraceOptions
+//   RAYLANES_OPTIONS(name) a type of C++: TraceOptions
 //   RAYLANES_NUMBERS       a namespace in raylanes::c with the types Number and Tree: float and Bvh
 #include <filesystem>
 #include <fstream>
@@ -24,6 +24,8 @@ namespace {
 using Rays = RayRecords<RayOf<Number>>;
 using Hits = HitRecords<HitOf<Number>>;
 using Vertices = VertexRecords<Number>;
+using CornersOfTriangle = RAYLANES_OPTIONS(Triangle);
+static_assert(sizeof(CornersOfTriangle) == 9 * sizeof(Number));
 static_assert(sizeof(RayOf<Number>) == sizeof(RAYLANES_RECORD(ray)));
 static_assert(sizeof(HitOf<Number>) == sizeof(RAYLANES_RECORD(hit)));
 
@@ -57,6 +59,22 @@ std::filesystem::path file_of(const char* name) {
 
 RAYLANES_HANDLE* handle_of(Tree tree) {
   return new RAYLANES_HANDLE{std::move(tree)};
+}
+
+// The hit of one ray, by find(ray) or find(ray, options).
+template <class Find>
+raylanes_status find_one(const RAYLANES_RECORD(ray) * ray, RAYLANES_RECORD(hit) * hit,
+                         const raylanes_ray_options* options, const Find& find) {
+  return status_of([&] {
+    require_pointer("ray", ray);
+    require_pointer("hit", hit);
+    const auto one = Rays(ray, 1)[0];
+    const Hits found(hit, 1);
+    if (options == nullptr)
+      found.set(0, find(one));
+    else
+      found.set(0, find(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1)));
+  });
 }
 
 template <class Item>
@@ -157,16 +175,7 @@ raylanes_status RAYLANES_CALL(occluded)(const RAYLANES_HANDLE* tree, const void*
 
 raylanes_status RAYLANES_CALL(closest1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
                                         RAYLANES_RECORD(hit) * hit, const raylanes_ray_options* options) {
-  return status_of([&] {
-    require_pointer("ray", ray);
-    require_pointer("hit", hit);
-    const auto one = Rays(ray, 1)[0];
-    const Hits found(hit, 1);
-    if (options == nullptr)
-      found.set(0, tree_of(tree).closest(one));
-    else
-      found.set(0, tree_of(tree).closest(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1)));
-  });
+  return find_one(ray, hit, options, [&](const auto&... asked) { return tree_of(tree).closest(asked...); });
 }
 
 raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
@@ -191,6 +200,13 @@ raylanes_status RAYLANES_CALL(closest_crossing)(const RAYLANES_HANDLE* tree, con
   });
 }
 
+raylanes_status RAYLANES_CALL(closest_crossing1)(const RAYLANES_HANDLE* tree,
+                                                 const RAYLANES_RECORD(ray) * ray, RAYLANES_RECORD(hit) * hit,
+                                                 const raylanes_ray_options* options) {
+  return find_one(ray, hit, options,
+                  [&](const auto&... asked) { return tree_of(tree).closest_crossing(asked...); });
+}
+
 raylanes_status RAYLANES_CALL(all_hits)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
                                         std::size_t stride, raylanes_lists** lists,
                                         const raylanes_ray_options* options) {
@@ -209,6 +225,36 @@ raylanes_status RAYLANES_CALL(crossings)(const RAYLANES_HANDLE* tree, const void
       return lists_of(
           tree_of(tree).crossings(rays_of(rays, n, stride), ray_options<ListOptions>(options, n)));
     });
+  });
+}
+
+raylanes_status RAYLANES_CALL(count_crossings)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
+                                               std::size_t stride, raylanes_crossing_count* counts,
+                                               const raylanes_ray_options* options) {
+  return status_of([&] {
+    tree_of(tree).count_crossings(rays_of(rays, n, stride), span_of<CrossingCount>("counts", counts, n),
+                                  ray_options<ListOptions>(options, n));
+  });
+}
+
+raylanes_status RAYLANES_CALL(corners)(const RAYLANES_HANDLE* tree, const void* primitives, std::size_t n,
+                                       std::size_t stride, Number* corners) {
+  return status_of([&] {
+    const Tree& asked = tree_of(tree);
+    const std::size_t apart = checked_stride("primitives", primitives, n, stride, sizeof(std::uint32_t));
+    checked_stride("corners", corners, n, 0, sizeof(CornersOfTriangle));
+    require_alignment("corners", corners, alignof(CornersOfTriangle));
+    asked.corners({primitives, n, apart}, {reinterpret_cast<CornersOfTriangle*>(corners), n});
+  });
+}
+
+raylanes_status RAYLANES_CALL(bounds)(const RAYLANES_HANDLE* tree, Number* lo, Number* hi) {
+  return status_of([&] {
+    const auto box = tree_of(tree).bounds();
+    require_pointer("lo", lo);
+    require_pointer("hi", hi);
+    std::copy(box.lo.begin(), box.lo.end(), lo);
+    std::copy(box.hi.begin(), box.hi.end(), hi);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <raylanes/closed_mesh.hpp>
+#include <raylanes/doubles.hpp>
 
 #include "shared_edges.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 
 class Edges {
  public:
-  Edges(const VertexView& vertices, const IndexView& triangles, const Progress* progress)
+  template <class T>
+  Edges(const VertexRecords<T>& vertices, const IndexView& triangles, const Progress* progress)
       : triangles_(triangles), pulse_(progress, steps_of_edges(vertices.count, triangles.count)) {
     number_ = numbers_of_positions(vertices, pulse_);
     const auto corners_of = [&](std::size_t i) {
@@ -86,16 +88,26 @@ class Edges {
   ClosedReport report_;
 };
 
-}  // namespace
-
-ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed,
-                           const Progress* progress) {
+template <class T>
+ClosedReport report_of(const VertexRecords<T>& vertices, const IndexView& triangles, std::size_t max_listed,
+                       const Progress* progress) {
   validate_mesh(vertices, triangles);
   if (vertices.count > 0xffffffffu || triangles.count >= std::size_t{1} << 30)
     throw std::invalid_argument("closed_report: " + std::to_string(vertices.count) + " vertices and " +
                                 std::to_string(triangles.count) +
                                 " triangles, allowed are less than 2^32 and 2^30");
   return Edges(vertices, triangles, progress).report(max_listed);
+}
+
+}  // namespace
+
+ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed,
+                           const Progress* progress) {
+  return report_of(vertices, triangles, max_listed, progress);
+}
+ClosedReport closed_report(VertexViewD vertices, IndexView triangles, std::size_t max_listed,
+                           const Progress* progress) {
+  return report_of(vertices, triangles, max_listed, progress);
 }
 
 }  // namespace raylanes

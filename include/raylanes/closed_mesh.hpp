@@ -62,9 +62,16 @@ struct ClosedReport {
 /// decreasing; exceptions pass through.
 ClosedReport closed_report(VertexView vertices, IndexView triangles, std::size_t max_listed = 16,
                            const Progress* progress = nullptr);
+/// Examines all edges of a mesh of doubles, whose positions are compared as doubles; otherwise as for floats.
+ClosedReport closed_report(VertexRecords<double> vertices, IndexView triangles, std::size_t max_listed = 16,
+                           const Progress* progress = nullptr);
 
 /// Returns whether each edge of the mesh has two triangles, in opposite directions.
 inline bool is_closed(VertexView vertices, IndexView triangles) {
+  return closed_report(vertices, triangles, 0).is_closed();
+}
+/// Returns whether each edge of the mesh of doubles has two triangles, in opposite directions.
+inline bool is_closed(VertexRecords<double> vertices, IndexView triangles) {
   return closed_report(vertices, triangles, 0).is_closed();
 }
 /// Returns whether each edge of the mesh has two triangles, in opposite directions.

@@ -93,6 +93,12 @@ typedef struct raylanes_crossingd {
   int32_t side;
 } raylanes_crossingd;
 
+/// How often a ray crosses the surface, and the sum of the sides.
+typedef struct raylanes_crossing_count {
+  uint32_t crossings;
+  int32_t winding;
+} raylanes_crossing_count;
+
 /// The closest point of a mesh. If there is none, distance_squared is infinite.
 typedef struct raylanes_closest_point {
   double distance_squared;
@@ -161,6 +167,10 @@ typedef struct raylanes_ray_options {
   const void* skip;
   size_t skip_stride;
   size_t max_count;  ///< all_hits and crossings keep the first so many items of each ray; default SIZE_MAX
+  /// In closest and closest_crossing, for each ray a hit of the tree, behind which its first one is found, in the order
+  /// of t, then of primitives. Behind a miss there is none, behind t = -infinity the first. Default NULL: none.
+  const void* after;
+  size_t after_stride;
 } raylanes_ray_options;
 
 /// How points are looked up.
@@ -268,6 +278,13 @@ RAYLANES_STATUS raylanes_bvhd_closest_crossing(const raylanes_bvhd* tree, const 
                                                size_t stride, void* hits, size_t hit_stride,
                                                const raylanes_ray_options* options);
 
+/// Finds the nearest hit at which one ray passes through the surface. `active` is ignored.
+RAYLANES_STATUS raylanes_bvh_closest_crossing1(const raylanes_bvh* tree, const raylanes_ray* ray,
+                                               raylanes_hit* hit, const raylanes_ray_options* options);
+/// Finds the nearest hit at which one ray of doubles passes through the surface.
+RAYLANES_STATUS raylanes_bvhd_closest_crossing1(const raylanes_bvhd* tree, const raylanes_rayd* ray,
+                                                raylanes_hitd* hit, const raylanes_ray_options* options);
+
 /// A list of items for each ray. Calls that make lists set *lists to NULL if they fail.
 typedef struct raylanes_lists raylanes_lists;
 /// Returns where the items of each ray begin, and the end of the last: one number more than rays. NULL if lists is.
@@ -290,6 +307,28 @@ RAYLANES_STATUS raylanes_bvh_crossings(const raylanes_bvh* tree, const void* ray
 /// Finds each crossing of a ray of doubles and the surface once: lists of raylanes_crossingd.
 RAYLANES_STATUS raylanes_bvhd_crossings(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
                                         raylanes_lists** lists, const raylanes_ray_options* options);
+/// Counts the crossings of each ray, and sums up their sides, without lists.
+RAYLANES_STATUS raylanes_bvh_count_crossings(const raylanes_bvh* tree, const void* rays, size_t n,
+                                             size_t stride, raylanes_crossing_count* counts,
+                                             const raylanes_ray_options* options);
+/// Counts the crossings of each ray of doubles, and sums up their sides.
+RAYLANES_STATUS raylanes_bvhd_count_crossings(const raylanes_bvhd* tree, const void* rays, size_t n,
+                                              size_t stride, raylanes_crossing_count* counts,
+                                              const raylanes_ray_options* options);
+
+// The triangles of a tree, as the mesh had them at the last build or refit.
+
+/// Writes v0, v1 and v2 of the triangle of each uint32_t: nine floats. A triangle that the tree does not have, such as
+/// that of a miss, has nine NaN. Primitives may lie in hits, sizeof(raylanes_hit) bytes apart.
+RAYLANES_STATUS raylanes_bvh_corners(const raylanes_bvh* tree, const void* primitives, size_t n,
+                                     size_t stride, float* corners);
+/// Writes v0, v1 and v2 of the triangle of each uint32_t: nine doubles.
+RAYLANES_STATUS raylanes_bvhd_corners(const raylanes_bvhd* tree, const void* primitives, size_t n,
+                                      size_t stride, double* corners);
+/// Writes the box around all triangles. An empty tree has lo = infinity and hi = -infinity.
+RAYLANES_STATUS raylanes_bvh_bounds(const raylanes_bvh* tree, float lo[3], float hi[3]);
+/// Writes the box around all triangles of doubles.
+RAYLANES_STATUS raylanes_bvhd_bounds(const raylanes_bvhd* tree, double lo[3], double hi[3]);
 
 // Queries of points: three floats, or three doubles in trees of doubles. Results of inactive points are unchanged.
 

@@ -79,7 +79,9 @@ class AnyArguments {
             .rays = build_.rays};
   }
 
-  const raylanes_ray_options* ray_options(std::size_t n) {
+  // hits: what the option `after` may be.
+  template <class Record>
+  const raylanes_ray_options* ray_options(std::size_t n, const AfterRecords<Record>& hits) {
     rays_ = default_ray_options();
     rays_.threads = threads();
     rays_.facing = enumerator(3);
@@ -92,6 +94,8 @@ class AnyArguments {
       skip_.put(skipped);
       if (n > 0) rays_.skip = skip_.first, rays_.skip_stride = stride(skip_, sizeof(std::uint32_t));
     }
+    if (hits.first != nullptr && hits.count > 0 && bytes_.chance(64))
+      rays_.after = hits.first, rays_.after_stride = stride(hits.stride, sizeof(Record));
     rays_.max_count = bytes_.chance(128) ? rays_.max_count : bytes_.below(80);
     return given(rays_, default_ray_options());
   }
@@ -102,6 +106,10 @@ class AnyArguments {
     options.facing = static_cast<Facing>(rays_.facing);
     if (rays_.skip != nullptr)
       options.skip = {rays_.skip, n, rays_.skip_stride == 0 ? sizeof(std::uint32_t) : rays_.skip_stride};
+    if constexpr (requires { options.after; })
+      if (rays_.after != nullptr)
+        options.after = {rays_.after, n,
+                         rays_.after_stride == 0 ? sizeof(options.after[0]) : rays_.after_stride};
     if constexpr (requires { options.max_count; })
       options.max_count = static_cast<std::uint32_t>(std::min<std::size_t>(rays_.max_count, 0xffffffffu));
     return options;

@@ -12,36 +12,41 @@ namespace raylanes::testing {
 template <class Number>
 struct CallsOf;
 // Names of functions and types; for doubles they have a d.
-#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d, D)                            \
-  template <>                                                                    \
-  struct CallsOf<Number> {                                                       \
-    using Handle = raylanes_bvh##d;                                              \
-    using Tree = TreeOfNumber;                                                   \
-    using Trace = TraceOptions##D;                                               \
-    using Closest = ClosestPointOptions##D;                                      \
-    using Distances = SignedDistanceOptions##D;                                  \
-    using CRay = raylanes_ray##d;                                                \
-    using CHit = raylanes_hit##d;                                                \
-    using CCrossing = raylanes_crossing##d;                                      \
-    using CClosestPoint = raylanes_closest_point##d;                             \
-    static constexpr auto create = raylanes_bvh##d##_create;                     \
-    static constexpr auto refit = raylanes_bvh##d##_refit;                       \
-    static constexpr auto destroy = raylanes_bvh##d##_destroy;                   \
-    static constexpr auto save = raylanes_bvh##d##_save;                         \
-    static constexpr auto save_file = raylanes_bvh##d##_save_file;               \
-    static constexpr auto load = raylanes_bvh##d##_load;                         \
-    static constexpr auto load_file = raylanes_bvh##d##_load_file;               \
-    static constexpr auto closest = raylanes_bvh##d##_closest;                   \
-    static constexpr auto occluded = raylanes_bvh##d##_occluded;                 \
-    static constexpr auto closest1 = raylanes_bvh##d##_closest1;                 \
-    static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;               \
-    static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing; \
-    static constexpr auto all_hits = raylanes_bvh##d##_all_hits;                 \
-    static constexpr auto crossings = raylanes_bvh##d##_crossings;               \
-    static constexpr auto locate = raylanes_bvh##d##_locate;                     \
-    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;     \
-    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances; \
-    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;   \
+#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d, D)                              \
+  template <>                                                                      \
+  struct CallsOf<Number> {                                                         \
+    using Handle = raylanes_bvh##d;                                                \
+    using Tree = TreeOfNumber;                                                     \
+    using Trace = TraceOptions##D;                                                 \
+    using Closest = ClosestPointOptions##D;                                        \
+    using Distances = SignedDistanceOptions##D;                                    \
+    using CRay = raylanes_ray##d;                                                  \
+    using Corners = Triangle##D;                                                   \
+    using CHit = raylanes_hit##d;                                                  \
+    using CCrossing = raylanes_crossing##d;                                        \
+    using CClosestPoint = raylanes_closest_point##d;                               \
+    static constexpr auto create = raylanes_bvh##d##_create;                       \
+    static constexpr auto refit = raylanes_bvh##d##_refit;                         \
+    static constexpr auto destroy = raylanes_bvh##d##_destroy;                     \
+    static constexpr auto save = raylanes_bvh##d##_save;                           \
+    static constexpr auto save_file = raylanes_bvh##d##_save_file;                 \
+    static constexpr auto load = raylanes_bvh##d##_load;                           \
+    static constexpr auto load_file = raylanes_bvh##d##_load_file;                 \
+    static constexpr auto closest = raylanes_bvh##d##_closest;                     \
+    static constexpr auto occluded = raylanes_bvh##d##_occluded;                   \
+    static constexpr auto closest1 = raylanes_bvh##d##_closest1;                   \
+    static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;                 \
+    static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing;   \
+    static constexpr auto closest_crossing1 = raylanes_bvh##d##_closest_crossing1; \
+    static constexpr auto count_crossings = raylanes_bvh##d##_count_crossings;     \
+    static constexpr auto corners = raylanes_bvh##d##_corners;                     \
+    static constexpr auto bounds = raylanes_bvh##d##_bounds;                       \
+    static constexpr auto all_hits = raylanes_bvh##d##_all_hits;                   \
+    static constexpr auto crossings = raylanes_bvh##d##_crossings;                 \
+    static constexpr auto locate = raylanes_bvh##d##_locate;                       \
+    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;       \
+    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances;   \
+    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;     \
   }
 RAYLANES_CALLS_OF(float, Bvh, , );
 RAYLANES_CALLS_OF(double, BvhD, d, D);

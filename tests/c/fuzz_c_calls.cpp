@@ -57,11 +57,14 @@ class Caller {
     const auto* const tree = arguments_.pointer(of_c_.get());
     const std::size_t n = arguments_.count(world_.rays.size());
     const void* const rays = arguments_.first(rays_);
-    const std::size_t kind = bytes_.below(11);
-    const std::size_t stride =
-        arguments_.stride(rays_, kind < 7 ? sizeof(RayOf<Number>) : 3 * sizeof(Number));
-    if (kind < 7)
+    const std::size_t kind = bytes_.below(13);
+    const std::size_t stride = arguments_.stride(rays_, kind < 8    ? sizeof(RayOf<Number>)
+                                                        : kind < 12 ? 3 * sizeof(Number)
+                                                                    : sizeof(std::uint32_t));
+    if (kind < 8)
       ask_rays(kind, tree, rays, n, stride);
+    else if (kind == 12)
+      ask_corners(tree, rays, n, stride);
     else
       ask_points(kind, tree, rays, n, stride);
     rays_.expect_intact("rays");
@@ -113,7 +116,10 @@ class Caller {
 
  private:
   void ask_rays(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
-    const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size());
+    using After = AfterRecords<Hit>;  // hits of any bits: the first ones of rays
+    const After after =
+        kind < 5 ? After(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>)) : After();
+    const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size(), after);
     const auto trace = arguments_.template ray_options_of_cpp<typename C::Trace>(world_.rays.size());
     const auto list = arguments_.template ray_options_of_cpp<ListOptions>(world_.rays.size());
     const std::size_t gap = bytes_.below(max_gap);
@@ -143,6 +149,14 @@ class Caller {
         return compare_lists(
             "all_hits", [&](raylanes_lists** lists) { return C::all_hits(tree, rays, n, stride, lists, c); },
             [&] { return tree_.all_hits(world_.rays, list); });
+      case 6:
+        return compare<CrossingCount>(
+            "count_crossings", 0,
+            [&](void* counts, std::size_t) {
+              return C::count_crossings(tree, rays, n, stride, static_cast<raylanes_crossing_count*>(counts),
+                                        c);
+            },
+            [&](auto& counts) { tree_.count_crossings(world_.rays, counts, list); });
       default:
         compare_lists(
             "crossings",
@@ -153,9 +167,9 @@ class Caller {
 
   void ask_points(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
     const VertexRecords<Number> points(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
-    const raylanes_point_options* const c = arguments_.point_options(kind == 7 || kind == 8, kind == 9);
+    const raylanes_point_options* const c = arguments_.point_options(kind == 8 || kind == 9, kind == 10);
     switch (kind) {
-      case 7:
+      case 8:
         return compare<Location>(
             "locate", 0,
             [&](void* locations, std::size_t) {
@@ -164,7 +178,7 @@ class Caller {
             [&](auto& locations) {
               tree_.locate(points, locations, arguments_.template point_options_of_cpp<LocateOptions>());
             });
-      case 8:
+      case 9:
         return compare<Number>(
             "signed_distances", 0,
             [&](void* distances, std::size_t) {
@@ -174,7 +188,7 @@ class Caller {
               tree_.signed_distances(points, distances,
                                      arguments_.template point_options_of_cpp<typename C::Distances>());
             });
-      case 9:
+      case 10:
         return compare<Number>(
             "winding_numbers", 0,
             [&](void* numbers, std::size_t) {
@@ -196,6 +210,18 @@ class Caller {
                                    arguments_.template point_options_of_cpp<typename C::Closest>());
             });
     }
+  }
+
+  // The first words of rays are primitives, of which the tree has few.
+  void ask_corners(const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
+    compare<typename C::Corners>(
+        "corners", 0,
+        [&](void* corners, std::size_t) {
+          return C::corners(tree, rays, n, stride, static_cast<Number*>(corners));
+        },
+        [&](auto& corners) {
+          tree_.corners({world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>)}, corners);
+        });
   }
 
   template <class Result, class OfC, class OfCpp>

@@ -55,7 +55,7 @@ class CCalls : public ::testing::Test, public Input<Number> {
     const std::vector<std::vector<std::uint8_t>> masks = masks_for(count, random);
     for (const Path* path : supported_paths())
       for (const int threads : {1, 2, 0})
-        for (std::int32_t variant = 0; variant < 5; ++variant) {
+        for (std::int32_t variant = 0; variant < 6; ++variant) {
           SCOPED_TRACE(std::string(path->name) + ", variant " + std::to_string(variant));
           raylanes_ray_options c = default_ray_options();
           Options options;
@@ -64,6 +64,8 @@ class CCalls : public ::testing::Test, public Input<Number> {
           if (variant < 3) c.facing = variant, options.facing = static_cast<Facing>(variant);
           if (variant == 3) c.active = options.active = masks[5].data();
           if (variant == 4) c.skip = &hits[0].primitive, c.skip_stride = sizeof hits[0], options.skip = hits;
+          if constexpr (requires { options.after; })
+            if (variant == 5) c.after = hits.data(), c.after_stride = sizeof hits[0], options.after = hits;
           check(c, options);
         }
   }
@@ -152,6 +154,25 @@ TYPED_TEST(CCalls, write_the_hits_of_one_ray) {
     EXPECT_TRUE(same_bytes(hit.values()[0], expected)) << i;
     ASSERT_EQ(C::occluded1(tree, static_cast<const typename C::CRay*>(given), &occluded, c), RAYLANES_OK);
     EXPECT_EQ(occluded, is_occluded ? 1 : 0) << i;
+    // Behind the hit there is the next one.
+    raylanes_ray_options behind = c != nullptr ? *c : default_ray_options();
+    behind.after = &expected;
+    ASSERT_EQ(C::closest1(tree, static_cast<const typename C::CRay*>(given),
+                          static_cast<typename C::CHit*>(hit.data()), &behind),
+              RAYLANES_OK);
+    const auto* const skip = static_cast<const std::uint32_t*>(behind.skip);
+    const auto& cpp = this->rays[i];
+    EXPECT_TRUE(same_bytes(hit.values()[0],
+                           skip == nullptr ? this->cpp_tree.closest(cpp, {.after = expected})
+                                           : this->cpp_tree.closest(cpp, {.skip = *skip, .after = expected})))
+        << i;
+    ASSERT_EQ(C::closest_crossing1(tree, static_cast<const typename C::CRay*>(given),
+                                   static_cast<typename C::CHit*>(hit.data()), c),
+              RAYLANES_OK);
+    EXPECT_TRUE(same_bytes(hit.values()[0], skip == nullptr
+                                                ? this->cpp_tree.closest_crossing(cpp)
+                                                : this->cpp_tree.closest_crossing(cpp, {.skip = *skip})))
+        << i;
   };
   std::vector<Hit> hits(count);
   this->cpp_tree.closest(this->rays, hits);
@@ -183,6 +204,37 @@ TYPED_TEST(CCalls, make_the_lists_of_the_classes) {
                          this->cpp_tree.crossings(this->rays, options));
     }
   });
+}
+
+TYPED_TEST(CCalls, count_the_crossings_of_the_classes) {
+  using C = CallsOf<TypeParam>;
+  this->template each_ray_option<ListOptions>([&](const auto& c, const auto& options) {
+    this->template expect_same<CrossingCount>(
+        0,
+        [&](auto& counts) {
+          return C::count_crossings(this->tree_of_c.get(), this->rays_of_c.data(), count,
+                                    this->rays_of_c.stride(),
+                                    static_cast<raylanes_crossing_count*>(counts.data()), &c);
+        },
+        [&](auto& counts) { this->cpp_tree.count_crossings(this->rays, counts, options); });
+  });
+}
+
+TYPED_TEST(CCalls, write_the_corners_and_the_box_of_the_classes) {
+  using C = CallsOf<TypeParam>;
+  std::vector<HitOf<TypeParam>> hits(count);
+  this->cpp_tree.closest(this->rays, hits);
+  this->template expect_same<typename C::Corners>(
+      0,
+      [&](auto& corners) {
+        return C::corners(this->tree_of_c.get(), &hits[0].primitive, count, sizeof hits[0],
+                          static_cast<TypeParam*>(corners.data()));
+      },
+      [&](auto& corners) { this->cpp_tree.corners(hits, corners); });
+  const auto box = this->cpp_tree.bounds();
+  PointOf<TypeParam> lo{}, hi{};
+  ASSERT_EQ(C::bounds(this->tree_of_c.get(), lo.data(), hi.data()), RAYLANES_OK);
+  EXPECT_TRUE(same_bytes(lo, box.lo) && same_bytes(hi, box.hi));
 }
 
 TYPED_TEST(CCalls, write_the_places_of_the_classes) {

@@ -24,6 +24,8 @@ static void test_hits(const TREE* tree) {
     EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
     GOOD(CALL(occluded1)(tree, rays + i, &is_occluded, NULL));
     EXPECT(is_occluded == occluded[i]);
+    GOOD(CALL(closest_crossing1)(tree, rays + i, &hit, NULL));
+    EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
   }
   GOOD(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, NULL));
   EXPECT(hits[0].t == 1.5 && hits[1].primitive == RAYLANES_NO_PRIMITIVE && hits[2].t == 0.25);
@@ -54,6 +56,17 @@ static void test_options_of_rays(const TREE* tree) {
   GOOD(CALL(closest)(tree, rays, 3, 0, again, 0, &options));
   EXPECT(again[0].t == 2 && again[1].primitive == RAYLANES_NO_PRIMITIVE && isinf(again[2].t));
 
+  // Peeled: behind the first hit the second, and nothing behind a miss.
+  options = ray_options();
+  options.after = hits;
+  GOOD(CALL(closest)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 2 && again[1].primitive == RAYLANES_NO_PRIMITIVE && isinf(again[2].t));
+  GOOD(CALL(closest_crossing)(tree, rays, 3, 0, again, 0, &options));
+  EXPECT(again[0].t == 2);
+  options.after_stride = sizeof *hits;
+  GOOD(CALL(closest_crossing1)(tree, rays, &hit, &options));
+  EXPECT(hit.t == 2 && hit.primitive == 0);
+
   options = ray_options();
   options.active = &active;
   again[0] = again[1] = hits[2];
@@ -80,6 +93,7 @@ static void test_lists(const TREE* tree) {
   const size_t* offsets;
   const RECORD(hit) * hits;
   const RECORD(crossing) * crossings;
+  raylanes_crossing_count counts[3];
   GOOD(CALL(all_hits)(tree, rays, 3, 0, &lists, NULL));
   offsets = raylanes_lists_offsets(lists);
   hits = raylanes_lists_items(lists);
@@ -94,8 +108,25 @@ static void test_lists(const TREE* tree) {
   EXPECT(crossings[0].t == 1.5 && crossings[0].side == -1 && crossings[0].primitive == 3);
   EXPECT(crossings[1].t == 2 && crossings[1].side == 1 && crossings[2].side == 1);
   raylanes_lists_destroy(lists);
+  GOOD(CALL(count_crossings)(tree, rays, 3, 0, counts, NULL));
+  EXPECT(counts[0].crossings == 2 && counts[0].winding == 0 && counts[1].crossings == 0);
+  EXPECT(counts[2].crossings == 1 && counts[2].winding == 1);
   raylanes_lists_destroy(NULL);
   EXPECT(raylanes_lists_offsets(NULL) == NULL && raylanes_lists_items(NULL) == NULL);
+}
+
+static void test_triangles(const TREE* tree) {
+  const uint32_t named[3] = {0, RAYLANES_NO_PRIMITIVE, 3};
+  NUMBER three[3][9], lo[3], hi[3];
+  size_t i;
+  GOOD(CALL(corners)(tree, named, 3, 0, three[0]));
+  for (i = 0; i < 9; ++i) {
+    EXPECT(three[0][i] == corners[3 * faces[i / 3] + i % 3]);
+    EXPECT(three[1][i] != three[1][i]);
+    EXPECT(three[2][i] == corners[3 * faces[9 + i / 3] + i % 3]);
+  }
+  GOOD(CALL(bounds)(tree, lo, hi));
+  EXPECT(lo[0] == 0 && lo[1] == 0 && lo[2] == 0 && hi[0] == 1 && hi[1] == 1 && hi[2] == 1);
 }
 
 static void test_points(const TREE* tree) {

@@ -9,6 +9,7 @@ static void test_wrong_options(const TREE* tree, void (*change)(raylanes_ray_opt
   REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), word);
   REFUSED(CALL(closest1)(tree, rays, hits, &options), word);
   REFUSED(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, &options), word);
+  REFUSED(CALL(closest_crossing1)(tree, rays, hits, &options), word);
   REFUSED(CALL(occluded)(tree, rays, 3, 0, occluded, &options), word);
   REFUSED(CALL(occluded1)(tree, rays, occluded, &options), word);
   REFUSED(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), word);
@@ -30,6 +31,32 @@ static void set_size(raylanes_ray_options* options) {
 }
 static void set_skip(raylanes_ray_options* options) {
   options->skip = faces, options->skip_stride = 3;
+}
+
+static void test_refused_triangles(const TREE* tree) {
+  const uint32_t named[3] = {0, 1, 2};
+  raylanes_ray_options options = ray_options();
+  raylanes_crossing_count counts[3];
+  RECORD(hit) hits[3];
+  NUMBER nines[28], lo[3], hi[3];
+  REFUSED(CALL(corners)(NULL, named, 3, 0, nines), "tree");
+  REFUSED(CALL(corners)(tree, NULL, 3, 0, nines), "primitives");
+  REFUSED(CALL(corners)(tree, named, 3, 3, nines), "primitives");
+  REFUSED(CALL(corners)(tree, named, 3, 0, NULL), "corners");
+  REFUSED(CALL(corners)(tree, named, 3, 0, (NUMBER*)(void*)((char*)nines + 1)), "corners");
+  REFUSED(CALL(bounds)(NULL, lo, hi), "tree");
+  REFUSED(CALL(bounds)(tree, NULL, hi), "lo");
+  REFUSED(CALL(bounds)(tree, lo, NULL), "hi");
+  REFUSED(CALL(count_crossings)(NULL, rays, 3, 0, counts, NULL), "tree");
+  REFUSED(CALL(count_crossings)(tree, NULL, 3, 0, counts, NULL), "rays");
+  REFUSED(CALL(count_crossings)(tree, rays, 3, 0, NULL, NULL), "counts");
+  REFUSED(CALL(closest_crossing1)(NULL, rays, hits, NULL), "tree");
+  REFUSED(CALL(closest_crossing1)(tree, NULL, hits, NULL), "ray");
+  REFUSED(CALL(closest_crossing1)(tree, rays, NULL, NULL), "hit");
+  options.after = hits, options.after_stride = sizeof *hits - 1;
+  REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), "after");
+  options.after_stride = SIZE_MAX;
+  REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), "after");
 }
 
 static void test_refused_rays(const TREE* tree) {

@@ -129,6 +129,8 @@ void TEST_TREES(void) {
   test_options_of_rays(tree);
   test_refused_rays(tree);
   test_lists(tree);
+  test_triangles(tree);
+  test_refused_triangles(tree);
   test_points(tree);
   test_refused_points(tree);
   test_files(tree);

@@ -39,6 +39,24 @@ TEST(ClosedMesh, knows_corners_by_their_positions) {
   EXPECT_EQ(report.open, 4u);
 }
 
+// A gap that floats would round away.
+TEST(ClosedMesh, compares_doubles_as_they_are) {
+  const Mesh mesh = unshared(tetrahedron());
+  std::vector<Double3> vertices;
+  for (const auto& [x, y, z] : mesh.vertices) vertices.push_back({double(x), double(y), double(z)});
+  EXPECT_TRUE(is_closed(vertices, mesh.triangles));
+  EXPECT_EQ(closed_report(vertices, mesh.triangles).edges, 6u);
+  const Double3 corner = vertices[4];
+  vertices[4][0] += 0x1p-52;
+  EXPECT_FALSE(is_closed(vertices, mesh.triangles));
+  EXPECT_EQ(closed_report(vertices, mesh.triangles).open, 4u);
+  for (Double3& vertex : vertices)
+    if (vertex == corner) vertex = vertices[4];
+  EXPECT_TRUE(is_closed(vertices, mesh.triangles));
+  vertices[0][0] = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(closed_report(vertices, mesh.triangles), std::invalid_argument);
+}
+
 TEST(ClosedMesh, says_where_a_hole_is) {
   Mesh mesh = tetrahedron();
   mesh.triangles.erase(mesh.triangles.begin() + 2);  // of 1 2 3
