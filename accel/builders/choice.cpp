@@ -50,7 +50,7 @@ TreeChoice choose_tree(std::size_t triangles, double waste, double rays) {
   std::snprintf(line, sizeof line, "%s: %s (boxes %.3g times what they hold, %s%.3g rays a triangle)",
                 tree_builder_names[static_cast<std::size_t>(builder)].data(), reason, waste,
                 rays > 0 ? "" : "by default ", each);
-  return {builder, false, line};
+  return {builder, line};
 }
 
 }  // namespace raylanes

@@ -16,7 +16,7 @@ BinaryTree BvhBuild::binary_tree(Array<Reference> references, double waste, cons
   memory.hold(left_out_.size() * sizeof(std::uint32_t));
   if (options_.choose) {
     TreeChoice choice = choose_tree(references.size(), waste, options_.rays);
-    options_.builder = choice.builder, options_.optimize = choice.optimize, options_.choose = false;
+    options_.builder = choice.builder, options_.choose = false;
     report_.choice = std::move(choice.why);
   }
   report_.boxes_seconds = watch.lap();

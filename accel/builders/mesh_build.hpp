@@ -32,7 +32,6 @@ struct BuildMeters {
 
 struct TreeChoice {
   TreeBuilder builder;
-  bool optimize;
   std::string why;  // one line
 };
 

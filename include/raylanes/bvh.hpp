@@ -21,8 +21,8 @@ struct BuildOptions {
   /// Whether to move subtrees to where they cost less (Bittner, Hapala, Havran 2013; Meister, Bittner 2018): for trees
   /// that trace many rays. Takes up to as long as binned_sah, often half of that.
   bool optimize = false;
-  /// Whether to choose `builder` and `optimize` by the mesh and by `rays`. The choice is the same on every machine and
-  /// for any number of threads. TreeReport::choice says what was chosen and why.
+  /// Whether to choose `builder` by the mesh and by `rays`. The choice is the same on every machine and for any number
+  /// of threads. TreeReport::choice says what was chosen and why.
   bool choose = false;
   double rays = 0;  ///< with `choose`: about how many rays the tree will trace; 0 or NaN: many
 };

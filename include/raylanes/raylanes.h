@@ -7,7 +7,8 @@
 // - Many threads may use one tree at the same time, but not while it is refitted or destroyed.
 // - `options` may be NULL: each member then has its default.
 // - An array may be NULL if it has no elements. Elements lie `stride` bytes apart, at any alignment; 0: side by side.
-//   Arrays without a stride need the alignment of their elements. Arrays of results overlap no other array.
+//   Arrays without a stride need the alignment of their elements. Arrays of results overlap no other array, but for
+//   `skip` and `active`; trees refuse rays and points that do.
 // - A stride less than an element, and a size beyond the address space, are invalid arguments.
 #ifndef RAYLANES_RAYLANES_H
 #define RAYLANES_RAYLANES_H
@@ -151,7 +152,7 @@ typedef struct raylanes_build_options {
   int32_t builder;   ///< a raylanes_builder
   int32_t threads;   ///< 1, the default: the calling thread; n: up to n; 0: one a core
   int32_t optimize;  ///< not 0: subtrees are moved to where they cost less; default 0
-  int32_t choose;    ///< not 0: builder and optimize are chosen by the mesh and `rays`; default 0
+  int32_t choose;    ///< not 0: the builder is chosen by the mesh and `rays`; default 0
   double rays;       ///< with `choose`: about how many rays will be traced; default 0: many
 } raylanes_build_options;
 

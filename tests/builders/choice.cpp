@@ -88,6 +88,11 @@ TEST(Choice, of_any_mesh_at_all) {
     }
 }
 
+TEST(Choice, leaves_optimization_to_the_caller) {
+  for (const bool optimize : {false, true})
+    EXPECT_EQ(Bvh(needles(300), {.optimize = optimize, .choose = true}).report().optimized, optimize);
+}
+
 TEST(Choice, changes_no_hit) {
   for (const Mesh& mesh : {triangle_soup(500, 0.3f, 95), needles(500)}) {
     const std::vector<Ray> rays = mixed_rays(mesh, by_level(500), 2, {0, 0, 0}, 96);
