@@ -123,6 +123,12 @@ class ActiveRays {
         copy_all([&](std::size_t i, Ray& ray) { segments.put(i, ray); });
         return n;
       }
+    if constexpr (requires { source_.records.parts; })
+      if (source_.records.parts != nullptr) {
+        const auto records = source_.records;
+        copy_all([&](std::size_t i, Ray& ray) { records.copy(i, ray); });
+        return n;
+      }
     copy_all([&](std::size_t i, Ray& ray) { ray = source_[i]; });
     return n;
   }

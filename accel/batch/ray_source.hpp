@@ -100,7 +100,7 @@ struct RaySourceOf {
   // The rays where they lie, if kernels can read them there.
   const Ray* in_place() const {
     const bool is_plain = arrays == nullptr && segments == nullptr && active == nullptr &&
-                          records.stride == sizeof(Ray) &&
+                          records.parts == nullptr && records.stride == sizeof(Ray) &&
                           reinterpret_cast<std::uintptr_t>(records.first) % alignof(Ray) == 0;
     return is_plain ? static_cast<const Ray*>(records.first) : nullptr;
   }
@@ -110,7 +110,10 @@ using RaySource = RaySourceOf<float>;
 
 template <class Source>
 void require_rays(const char* call, const Source& rays) {
-  if (rays.records.first == nullptr && rays.records.count > 0)
+  const auto* const parts = rays.records.parts;
+  const bool is_null =
+      rays.records.first == nullptr || (parts != nullptr && parts->direction.first == nullptr);
+  if (is_null && rays.records.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of rays points to nothing");
 }
 inline void require_skip(const char* call, const PrimitiveView& skip, std::size_t rays) {

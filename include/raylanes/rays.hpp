@@ -29,19 +29,39 @@ T* first_of(R& range) {
 
 }  // namespace detail
 
-/// A view of rays: a Record every `stride` bytes, of any alignment. It owns nothing.
-/// It converts from a contiguous range of Record, or of a class derived from Record.
+/// Rays whose origins, directions and ends lie in arrays of their own, of any alignment: floats for Ray, doubles for
+/// RayD. It owns nothing. With a stride of 0 all rays share one origin, direction or end.
+struct RayParts {
+  /// Numbers of each ray.
+  struct Part {
+    const void* first = nullptr;  ///< the numbers of the first ray
+    std::size_t stride = 0;       ///< bytes from the numbers of one ray to the next ray's
+  };
+  Part origin;            ///< three numbers a ray
+  Part direction;         ///< three numbers a ray
+  Part tmin;              ///< one number a ray; null: 0
+  Part tmax;              ///< one number a ray; null: +infinity
+  std::size_t count = 0;  ///< the number of rays
+};
+
+/// A view of rays: a Record every `stride` bytes, of any alignment, or RayParts. It owns nothing.
+/// It converts from a contiguous range of Record, or of a class derived from Record; and from RayParts, which must
+/// outlive it.
 template <class Record>
 struct RayRecords {
-  const void* first = nullptr;          ///< the first ray; null only if count = 0
+  const void* first = nullptr;          ///< the first ray, or the origin of the first; null only if count = 0
   std::size_t count = 0;                ///< the number of rays
-  std::size_t stride = sizeof(Record);  ///< bytes from one ray to the next
+  std::size_t stride = sizeof(Record);  ///< bytes from one ray to the next, or from one origin to the next
+  const RayParts* parts = nullptr;      ///< where the numbers of rays lie; null: in records
 
   /// Makes a view of no rays.
   RayRecords() = default;
   /// Makes a view of `size` rays, `bytes_apart` bytes from one to the next.
   RayRecords(const void* rays, std::size_t size, std::size_t bytes_apart = sizeof(Record))
       : first(rays), count(size), stride(bytes_apart) {}
+  /// Makes a view of rays whose numbers lie apart.
+  RayRecords(const RayParts& apart RAYLANES_LIFETIMEBOUND)
+      : first(apart.origin.first), count(apart.count), stride(apart.origin.stride), parts(&apart) {}
   /// Makes a view of a range.
   template <class R>
   requires detail::RangeOfRecords<const R, const Record> RayRecords(const R& rays)
@@ -56,8 +76,27 @@ struct RayRecords {
   /// Returns a copy of ray i.
   Record operator[](std::size_t i) const {
     Record ray;
-    std::memcpy(static_cast<void*>(&ray), static_cast<const std::byte*>(first) + i * stride, sizeof ray);
+    copy(i, ray);
     return ray;
+  }
+  /// Writes a copy of ray i to `ray`.
+  void copy(std::size_t i, Record& ray) const {
+    if constexpr (requires { ray.direction; })
+      if (parts != nullptr) {
+        read(parts->origin, i, ray.origin), read(parts->direction, i, ray.direction);
+        ray.tmin = Record().tmin, ray.tmax = Record().tmax;
+        if (parts->tmin.first != nullptr) read(parts->tmin, i, ray.tmin);
+        if (parts->tmax.first != nullptr) read(parts->tmax, i, ray.tmax);
+        return;
+      }
+    read({first, stride}, i, ray);
+  }
+
+ private:
+  template <class Numbers>
+  static void read(const RayParts::Part& part, std::size_t i, Numbers& to) {
+    std::memcpy(static_cast<void*>(&to), static_cast<const std::byte*>(part.first) + i * part.stride,
+                sizeof to);
   }
 };
 /// A view of rays of floats.

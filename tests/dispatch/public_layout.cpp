@@ -38,7 +38,7 @@ static_assert(has<PrimitiveView, 32, 8>);
 static_assert(has<PointDistances, 96, 8>);
 static_assert(has<Ray, 32, 4>);
 static_assert(has<RayArrays, 72, 8>);
-static_assert(has<RayView, 24, 8>);
+static_assert(has<RayView, 32, 8>);
 static_assert(has<SceneHit, 24, 4>);
 static_assert(has<SceneHitView, 24, 8>);
 static_assert(has<SegmentEnds, 8, 4>);
