@@ -8,6 +8,7 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/queries.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "call.hpp"
 
 namespace raylanes::c {
@@ -58,6 +59,7 @@ Options ray_options(const raylanes_ray_options* given, std::size_t count) {
 // The options of a call with points, of any class that the queries of points have.
 template <class Options>
 Options point_options(const raylanes_point_options* given) {
+  const QuietFloats quiet;  // floats round max_distance
   const raylanes_point_options c = completed(given, point_defaults());
   Options options;
   options.path = path_of(c.path);

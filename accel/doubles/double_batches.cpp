@@ -82,14 +82,13 @@ const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   return kernels_of(checked_path(options.path)).doubles;
 }
 
-void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
-                const TraceOptionsD& options) {
-  require_rays("trace", rays);
-  require_hits("trace", hits, rays.size());
-  require_skip("trace", rays.skip, rays.size());
+void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, const HitViewD& hits,
+                const TraceOptionsD& by) {
+  const CheckedCall checked("trace", given, hits, by);
+  const RaySourceOf<double>& rays = checked.rays;
+  const TraceOptionsD& options = checked.options;
   const DoubleRayKernels& kernels = checked_kernels(options);
   const bool looks_behind = options.after.first != nullptr;
-  require_after("trace", options.after, rays.size());
   const auto batch_of = [&](const RayCall<HitD, RayD>& call, const HitD* last) {
     DoubleBatch batch;
     batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
@@ -109,11 +108,10 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, con
                });
 }
 
-void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
+void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
-  require_rays("trace", rays);
-  require_occluded("trace", occluded, what, rays.size());
-  require_skip("trace", rays.skip, rays.size());
+  const CheckedCall checked("trace", given, what, occluded, options);
+  const RaySourceOf<double>& rays = checked.rays;
   const DoubleRayKernels& kernels = checked_kernels(options);
   const bool together = rays.size() >= min_shared_point && takes_all(options);
   over_calls(

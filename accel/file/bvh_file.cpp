@@ -4,6 +4,7 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "tree_file.hpp"
 
 namespace raylanes {
@@ -245,6 +246,7 @@ void save_tree(const Tree& tree, std::ostream& file) {
 
 template <class Tree>
 Tree load_tree(std::istream& file) {
+  const QuietFloats quiet;
   TreeReader reader(file, Format<Tree>::kind, format_version);
   Header header;
   reader.read(&header, sizeof header);

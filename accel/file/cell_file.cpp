@@ -1,6 +1,7 @@
 // Files of KdTree.
 #include <raylanes/kdtree.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "tree_file.hpp"
 
 namespace raylanes {
@@ -113,6 +114,7 @@ void save_cells(const KdTreeArrays& tree, std::ostream& file) {
 }
 
 KdTreeArrays load_cells(std::istream& file) {
+  const QuietFloats quiet;
   TreeReader reader(file, FileKind::kd_tree, format_version);
   Header header;
   reader.read(&header, sizeof header);

@@ -1,6 +1,7 @@
 // The leaves of a tree: blocks of the corners of up to eight triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -111,6 +112,14 @@ class Leaves {
   std::size_t count_ = 0;
   Array<Line> lines_;
 };
+
+// The place of a primitive among places(), or null. Finds it at once where each primitive has one.
+inline const std::uint64_t* place_of(std::span<const std::uint64_t> places, std::uint32_t primitive) {
+  const std::uint64_t* place = places.data() + primitive;
+  if (primitive >= places.size() || *place >> 32 != primitive)
+    place = std::to_address(std::ranges::lower_bound(places, std::uint64_t{primitive} << 32));
+  return place != places.data() + places.size() && *place >> 32 == primitive ? place : nullptr;
+}
 
 // A node without children.
 WideNode empty_node();

@@ -8,6 +8,7 @@
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/doubles.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "shared_edges.hpp"
 
 namespace raylanes {
@@ -91,6 +92,7 @@ class Edges {
 template <class T>
 ClosedReport report_of(const VertexRecords<T>& vertices, const IndexView& triangles, std::size_t max_listed,
                        const Progress* progress) {
+  const QuietFloats quiet;
   validate_mesh(vertices, triangles);
   if (vertices.count > 0xffffffffu || triangles.count >= std::size_t{1} << 30)
     throw std::invalid_argument("closed_report: " + std::to_string(vertices.count) + " vertices and " +

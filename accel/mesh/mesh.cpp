@@ -8,6 +8,7 @@
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "../batch/in_parallel.hpp"
 #include "valid_mesh.hpp"
 
@@ -105,6 +106,7 @@ void require_finite_corners(const View& vertices, const IndexView& triangles) {
 
 template <class View>
 void validate(const View& vertices, const IndexView& triangles, int threads) {
+  const QuietFloats quiet;
   if ((vertices.first == nullptr && vertices.count > 0) ||
       (triangles.first == nullptr && triangles.count > 0))
     throw std::invalid_argument("mesh: a view of vertices or triangles points to nothing");

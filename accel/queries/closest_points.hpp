@@ -7,7 +7,7 @@
 #include "../../dispatch/table/points.hpp"
 #include "../batch/array.hpp"
 #include "../batch/batch.hpp"
-#include "../batch/ray_source.hpp"
+#include "../batch/checked_call.hpp"
 #include "../batch/sort_keys.hpp"
 
 namespace raylanes {
@@ -72,11 +72,10 @@ template <class T, class Tree, class Row, class Options>
 void answer_closest_points(const Tree& tree, const BoxOf<T>& bounds, Row row, const VertexRecords<T>& points,
                            std::span<ClosestPointOf<T>> closest, const Options& options,
                            TraceCounters* counters) {
-  require_points("closest_points", points);
-  require_size("closest_points", "closest", closest.size(), "points", points.count);
+  const CheckedPoints<T> call("closest_points", points, "closest", closest, options.active);
   PointBatchOf<T> all;
   all.points = static_cast<const std::byte*>(points.first), all.stride = points.stride;
-  all.active = options.active;
+  all.active = call.active;
   all.max_distance = double{options.max_distance}, all.closest = closest.data();
   BatchPlan plan{options.threads, counters};
   plan.min_part = 1024, plan.max_part = points.count, plan.progress = options.progress;

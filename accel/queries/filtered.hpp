@@ -5,26 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "../batch/ray_source.hpp"
+#include "../batch/checked_call.hpp"
 
 namespace raylanes {
 
 // The rays of a call for next hits: few enough for their hits to stay in the first levels of caches.
 constexpr std::size_t rays_of_next_calls = 1024;
 
-// A primitive to skip, of an instance where there are some.
-struct SkippedPrimitive {
-  std::uint32_t primitive, instance;
-};
-inline SkippedPrimitive skipped_at(const PrimitiveView& skip, std::size_t i) {
-  return {skip[i], skip.to_instance != 0 ? skip.instance(i) : 0};
-}
-// The primitives that all rays of a batch skip, or some by their indices; empty: none.
-inline std::vector<SkippedPrimitive> all_skips(const PrimitiveView& skip) {
-  std::vector<SkippedPrimitive> skips;
-  for (std::size_t i = 0; skip.first != nullptr && i < skip.count; ++i) skips.push_back(skipped_at(skip, i));
-  return skips;
-}
+// The primitives that some rays of a batch skip, by their indices; empty: none.
 inline std::vector<SkippedPrimitive> skips_of(const PrimitiveView& skip, std::span<const std::size_t> rays) {
   std::vector<SkippedPrimitive> skips;
   for (std::size_t k = 0; skip.first != nullptr && k < rays.size(); ++k)
@@ -82,11 +70,9 @@ void replace_turned_down(const Source& rays, const View& hits, const Filter& fil
 }
 
 // Sets occluded[i] of each active ray to whether it has a hit that a filter keeps: find(hits, options) finds these.
-// what_rays: the word for the rays in messages.
 template <class AnyHit, class Source, class Options, class Find>
-void occluded_by_filter(const char* call, const Source& rays, const char* what_rays,
-                        std::span<std::uint8_t> occluded, const Options& options, const Find& find) {
-  require_occluded(call, occluded, what_rays, rays.size());
+void occluded_by_filter(const Source& rays, std::span<std::uint8_t> occluded, const Options& options,
+                        const Find& find) {
   std::vector<AnyHit> hits(rays.size());
   Options from_the_first = options;
   from_the_first.after = {};  // of closest() only

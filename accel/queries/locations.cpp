@@ -5,6 +5,7 @@
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../batch/checked_call.hpp"
 #include "windings.hpp"
 
 namespace raylanes {
@@ -105,7 +106,6 @@ void each_winding(const char* call, const Surface<T>& surface, const VertexRecor
                   const Options& options, std::span<const double> accuracy_of_rounds, const Put& put) {
   ListMaker<T> maker = maker_of_sides(call, surface, options);
   const WindingKernels& kernels = kernels_of(checked_path(options.path)).winding;
-  const QuietFloats quiet;
   const BoundaryProgress before_points(options.progress);
   const KeptBoundary boundary = boundary_of(surface, options.threads, before_points.get());
   const StepProgress of_points = before_points.rest();
@@ -126,9 +126,10 @@ void each_winding(const char* call, const Surface<T>& surface, const VertexRecor
 
 template <class T>
 void locate_points(const Surface<T>& surface, const VertexRecords<T>& points, std::span<Location> locations,
-                   const LocateOptions& options) {
-  require_points("locate", points);
-  require_size("locate", "locations", locations.size(), "points", points.count);
+                   const LocateOptions& given) {
+  const CheckedPoints<T> call("locate", points, "locations", locations, given.active);
+  LocateOptions options = given;
+  options.active = call.active;
   checked_index("locate", "rule", options.rule, inside_rule_names.size());
   if (options.rule == InsideRule::winding) {
     // Coarse numbers decide most points; the others have finer ones, at last without expansions.
@@ -141,7 +142,6 @@ void locate_points(const Surface<T>& surface, const VertexRecords<T>& points, st
                         });
   }
   const ListMaker<T> maker = maker_of_sides("locate", surface, options);
-  const QuietFloats quiet;
   const Points<T> all{points, surface.tree.bounds, options.active};
   if (options.rule == InsideRule::vote) return locate_by_vote(maker, RaysOfVotes<T>{all}, locations);
   const std::int32_t deciding = bits_that_decide(options.rule);
@@ -156,9 +156,10 @@ void locate_points(const Surface<T>& surface, const VertexRecords<T>& points, st
 
 template <class T>
 void find_winding_numbers(const Surface<T>& surface, const VertexRecords<T>& points, std::span<T> numbers,
-                          const WindingOptions& options) {
-  require_points("winding_numbers", points);
-  require_size("winding_numbers", "numbers", numbers.size(), "points", points.count);
+                          const WindingOptions& given) {
+  const CheckedPoints<T> call("winding_numbers", points, "numbers", numbers, given.active);
+  WindingOptions options = given;
+  options.active = call.active;
   if (!(options.accuracy >= 0.0))
     throw std::invalid_argument("winding_numbers: accuracy " + text_of(options.accuracy) +
                                 ", allowed are 0 and positive numbers");

@@ -9,6 +9,7 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../batch/checked_call.hpp"
 #include "lists.hpp"
 #include "traced_tree.hpp"
 
@@ -107,16 +108,13 @@ bool is_quick(const TreeView* ready) {
 }
 void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptions& options) {
-  require_rays("trace", rays);
-  require_occluded("trace", occluded, what, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  Traversal traversal = checked_traversal(tree, options);
+  const CheckedCall call("trace", rays, what, occluded, options);
+  Traversal traversal = checked_traversal(tree, call.options);
   traversal.choice.facing = rays.sides(options.facing);
-  trace(traversal.tree, traversal.choice, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+  trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 void trace_segments(const TracedTree& tree, const Segments& segments, std::span<std::uint8_t> occluded,
                     const TraceOptions& options) {
-  require_points("trace", segments.points);
   trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
                  occluded, options);
 }
@@ -148,13 +146,10 @@ void detail::require_ordered_hits(bool are_ordered) {
 
 void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options) {
-  require_rays("trace", rays);
-  require_hits("trace", hits, rays.size());
-  require_skip("trace", rays.skip, rays.size());
-  require_after("trace", options.after, rays.size());
-  const Traversal traversal = checked_traversal(tree, options);
-  if (options.after.first != nullptr) return trace_next(tree, rays, hits, options);
-  trace(traversal.tree, traversal.choice, rays, HitSink<Hit>{hits}, options.threads);
+  const CheckedCall call("trace", rays, hits, options);
+  const Traversal traversal = checked_traversal(tree, call.options);
+  if (options.after.first != nullptr) return trace_next(tree, call.rays, hits, call.options);
+  trace(traversal.tree, traversal.choice, call.rays, HitSink<Hit>{hits}, options.threads);
 }
 
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {

@@ -59,7 +59,8 @@ struct FilteredCall {
   // RayRecords or RayArraysOf<T>.
   template <class Rays>
   void closest(const Rays& rays, const HitRecords<AnyHit>& hits) const {
-    find(source_of(rays), hits, options);
+    const CheckedCall checked(call, source_of(rays), hits, options);
+    find(checked.rays, hits, checked.options);
   }
   template <class Rays>
   void occluded(const Rays& rays, std::span<std::uint8_t> occluded) const {
@@ -96,9 +97,10 @@ struct FilteredCall {
   void find_occluded(const RaySourceOf<T>& rays, const char* what, std::span<std::uint8_t> occluded) const {
     Options by = options;
     if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
-    occluded_by_filter<AnyHit>(call, rays, what, occluded, by,
+    const CheckedCall checked(call, rays, what, occluded, by);
+    occluded_by_filter<AnyHit>(checked.rays, occluded, checked.options,
                                [&](const HitRecords<AnyHit>& hits, const Options& from_the_first) {
-                                 find(rays, hits, from_the_first);
+                                 find(checked.rays, hits, from_the_first);
                                });
   }
 };

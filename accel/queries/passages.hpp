@@ -113,15 +113,15 @@ class PassageJudge {
 };
 
 // As Tree::closest_crossing(): the nearest hits of the tree, of which those that are no passages give way to the next
-// ones. Hits may be written over the primitives to skip. `view` is the tree as lists take it.
+// ones. `view` is the tree as lists take it.
 template <class T, class Tree, class View, class Options>
-void closest_passages(const Tree& tree, const View& view, RaySourceOf<T> rays,
-                      const HitRecords<HitOf<T>>& hits, Options options) {
-  const std::vector<SkippedPrimitive> kept = all_skips(options.skip);
-  if (!kept.empty()) rays.skip = options.skip = kept;
+void closest_passages(const Tree& tree, const View& view, const RaySourceOf<T>& given,
+                      const HitRecords<HitOf<T>>& hits, const Options& by) {
+  const CheckedCall call("closest_crossing", given, hits, by);
+  const RaySourceOf<T>& rays = call.rays;
+  const Options& options = call.options;
   rays.arrays != nullptr ? tree.closest(*rays.arrays, hits, options)
                          : tree.closest(rays.records, hits, options);
-  const QuietFloats quiet;
   const PassageJudge<T> judge(view, options);
   const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const HitOf<T>> found,
                              std::span<std::uint8_t> rejected) {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "../batch/checked_call.hpp"
 #include "lists.hpp"
 
 namespace raylanes {
@@ -27,8 +28,7 @@ template <class Item>
 template <class Item, class Entry, class T, class Tree, class Of>
 RayLists<Item> lists_of(const char* call, ListKind kind, const Tree& tree, const RaySourceOf<T>& rays,
                         const ListOptions& options, const Of& item) {
-  require_rays(call, rays);
-  require_skip(call, rays.skip, rays.size());
+  const CheckedCall checked(call, rays, options);
   const ListMaker<T> maker = checked_maker(call, kind, tree, options, options.max_count, options.facing);
   const BatchPlan plan = plan_of(maker);
   const std::size_t n = rays.size();
@@ -88,11 +88,10 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
                       std::size_t end, TraceCounters* counters, std::span<CrossingCount> counts);
 
 template <class T, class Tree>
-void count_crossings_of(const Tree& tree, const RaySourceOf<T>& rays, std::span<CrossingCount> counts,
+void count_crossings_of(const Tree& tree, const RaySourceOf<T>& given, std::span<CrossingCount> counts,
                         const ListOptions& options) {
-  require_rays("count_crossings", rays);
-  require_skip("count_crossings", rays.skip, rays.size());
-  require_size("count_crossings", "counts", counts.size(), "rays", rays.size());
+  const CheckedCall call("count_crossings", given, counts, options);
+  const RaySourceOf<T>& rays = call.rays;
   const ListMaker<T> maker =
       checked_maker("count_crossings", ListKind::sides, tree, options, ~0u, options.facing);
   over_parts(plan_of(maker), rays.size(), [&](std::size_t begin, std::size_t end, TraceCounters* counters) {

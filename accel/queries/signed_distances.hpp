@@ -9,8 +9,8 @@
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../batch/checked_call.hpp"
 #include "../batch/in_parallel.hpp"
-#include "../batch/ray_source.hpp"
 
 namespace raylanes {
 
@@ -38,10 +38,10 @@ T signed_distance(const ClosestPointOf<T>& closest, Location location) {
 // As TriangleTree::signed_distances(): locate(points, locations, active, progress) and find(points, closest, active,
 // progress) are the tree's, with the options.
 template <class T, class Locate, class Find>
-void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances, LaneBits active,
+void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances, LaneBits given,
                          const Progress* progress, const Locate& locate, const Find& find) {
-  require_points("signed_distances", points);
-  require_size("signed_distances", "distances", distances.size(), "points", points.count);
+  const CheckedPoints<T> call("signed_distances", points, "distances", distances, given);
+  const LaneBits active = call.active;
   std::vector<ClosestPointOf<T>> closest(std::min(max_distances_at_once, points.count));
   std::vector<Location> locations(closest.size());
   std::size_t first = 0;

@@ -21,6 +21,16 @@ std::vector<Box> widened(std::span<const Box> boxes, float slack) {
   return wide;
 }
 
+BoundedTreeArrays tree_over(std::span<const Box> boxes, const BoundedBuildOptions& options) {
+  const QuietFloats quiet;
+  BoundedTreeArrays tree = build_box_tree(
+      "bounded tree",
+      options.slack > 0.0f ? widened(boxes, options.slack) : std::vector<Box>(boxes.begin(), boxes.end()),
+      options);
+  tree.slack = options.slack;
+  return tree;
+}
+
 const BoundedTreeArrays no_boxes;
 
 // Traces the rays of a batch on this thread.
@@ -61,12 +71,7 @@ BoundedTree::BoundedTree(BoundedTree&&) noexcept = default;
 BoundedTree& BoundedTree::operator=(BoundedTree&&) noexcept = default;
 
 BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& options)
-    : tree_(std::make_unique<BoundedTreeArrays>(build_box_tree(
-          "bounded tree",
-          options.slack > 0.0f ? widened(boxes, options.slack) : std::vector<Box>(boxes.begin(), boxes.end()),
-          options))) {
-  tree_->slack = options.slack;
-}
+    : tree_(std::make_unique<BoundedTreeArrays>(tree_over(boxes, options))) {}
 
 void BoundedTree::closest(RayView rays, HitView hits, LeafFunction visit, void* context,
                           const VisitOptions& options) const {

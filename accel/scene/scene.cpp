@@ -6,6 +6,7 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../batch/checked_call.hpp"
 #include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"
 
@@ -42,16 +43,13 @@ void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink,
 }
 void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
                     std::span<std::uint8_t> occluded, const TraceOptions& options, std::uint32_t mask) {
-  require_rays("scene", rays);
-  require_skip("scene", options.skip, rays.size());
-  require_occluded("scene", occluded, what, rays.size());
-  SceneQuery query = checked_query(scene, options, mask);
+  const CheckedCall call("scene", rays, what, occluded, options);
+  SceneQuery query = checked_query(scene, call.options, mask);
   query.choice.facing = rays.sides(options.facing);
-  trace_all(query, rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+  trace_all(query, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
 }
 void trace_segments(const SceneParts& scene, const Segments& segments, std::span<std::uint8_t> occluded,
                     const TraceOptions& options, std::uint32_t mask) {
-  require_points("scene", segments.points);
   trace_occluded(scene, {.segments = &segments, .active = options.active}, "points", occluded, options, mask);
 }
 
@@ -65,13 +63,11 @@ const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
 
 void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
                 const TraceOptions& options, std::uint32_t mask) {
-  require_rays("scene", rays);
-  require_skip("scene", options.skip, rays.size());
+  const CheckedCall call("scene", rays, hits, options);
   require_after_in_scene(options, rays.size());
-  require_hits("scene", hits, rays.size());
-  const SceneQuery query = checked_query(scene, options, mask);
-  if (options.after.first != nullptr) return trace_next(query, rays, hits, options);
-  trace_all(query, rays, HitSink<SceneHit>{hits}, options.threads);
+  const SceneQuery query = checked_query(scene, call.options, mask);
+  if (options.after.first != nullptr) return trace_next(query, call.rays, hits, call.options);
+  trace_all(query, call.rays, HitSink<SceneHit>{hits}, options.threads);
 }
 
 SceneHit Scene::closest(const Ray& ray) const {
@@ -140,6 +136,7 @@ void Scene::occluded_towards(const Float3& direction, VertexView points, std::sp
 }
 
 Box Scene::bounds() const noexcept {
+  const QuietFloats quiet;
   Box all = empty_box;
   for (const TopLevel& top : parts().tops) extend(all, top.tree.bounds);
   if (parts().traces_common)

@@ -1,5 +1,6 @@
 // How scenes come about and change.
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -74,6 +75,7 @@ std::size_t Scene::geometry_count() const noexcept {
 }
 
 std::uint32_t Scene::place(std::uint32_t geometry, const Transform& transform, std::uint32_t mask) {
+  const QuietFloats quiet;
   at("geometry", changed().geometries, geometry);
   const std::uint32_t number = next_number("instances", changed().instances);
   changed().instances.emplace_back(geometry, transform, mask);
@@ -81,6 +83,7 @@ std::uint32_t Scene::place(std::uint32_t geometry, const Transform& transform, s
   return number;
 }
 void Scene::move(std::uint32_t instance, const Transform& transform) {
+  const QuietFloats quiet;
   Instance& moved = at("instance", changed().instances, instance);
   const Standing standing = left(moved.standing);
   moved = Instance(moved.geometry, transform, moved.mask);
@@ -120,6 +123,7 @@ std::size_t Scene::instance_count() const noexcept {
 }
 
 void Scene::update(int threads) {
+  const QuietFloats quiet;
   require_threads("scene", threads);
   SceneParts& parts = changed();
   std::vector<InstanceBounds> bounds = bounds_of_instances(parts);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "../file/tree_file.hpp"
 #include "scene_parts.hpp"
 
@@ -99,6 +100,7 @@ void Scene::save(std::ostream& file) const {
 }
 
 Scene Scene::load(std::istream& file) {
+  const QuietFloats quiet;
   const Tables tables = read_tables(file);
   Scene scene;
   std::span<const Sphere> spheres = tables.spheres;

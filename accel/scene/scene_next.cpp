@@ -110,11 +110,10 @@ SceneHit Scene::closest_crossing(const Ray& ray, const TraceOptions& options, st
 void Scene::closest_crossing(RayView rays, SceneHitView hits, const TraceOptions& options,
                              std::uint32_t mask) const {
   require_triangles(*this, options);
-  const std::vector<SkippedPrimitive> kept = all_skips(options.skip);
-  TraceOptions by = options;
-  if (!kept.empty()) by.skip = kept;
-  closest(rays, hits, by, mask);
-  keep_passages(*this, parts(), {.records = rays, .active = options.active, .skip = by.skip}, hits, by, mask);
+  const RaySource source{.records = rays, .active = options.active, .skip = options.skip};
+  const CheckedCall call("scene", source, hits, options);
+  closest(rays, hits, call.options, mask);
+  keep_passages(*this, parts(), call.rays, hits, call.options, mask);
 }
 
 void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,

@@ -37,6 +37,7 @@ Box box_of(const Sphere& sphere) {
 }
 
 SphereTreeArrays leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions options) {
+  const QuietFloats quiet;
   std::vector<Box> boxes(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) boxes[i] = box_of(spheres[i]);
   options.slack = 0.0f, options.max_in_leaf = tree_width;

@@ -4,6 +4,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/batch.hpp"
+#include "../batch/checked_call.hpp"
 #include "bounded_tree_arrays.hpp"
 
 namespace raylanes {
@@ -37,8 +38,6 @@ void trace_boxes(const BoundedTreeArrays& tree, const KernelTable& kernels, cons
 template <class Sink, class Trace>
 void visit_parts(const char* what, const RaySource& rays, const Sink& sink, const VisitOptions& options,
                  const Trace& trace) {
-  require_rays(what, rays);
-  require_skip(what, rays.skip, rays.size());
   require_threads(what, options.threads);
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
@@ -60,15 +59,14 @@ void visit_parts(const char* what, const RaySource& rays, const Sink& sink, cons
 template <class Trace>
 void visit_hits(const char* what, const RaySource& rays, const HitView& hits, const VisitOptions& options,
                 const Trace& trace) {
-  require_hits(what, hits, rays.size());
-  require_after(what, options.after, rays.size());
-  visit_parts(what, rays, HitSink<Hit>{hits}, options, trace);
+  const CheckedCall call(what, rays, hits, options);
+  visit_parts(what, call.rays, HitSink<Hit>{hits}, call.options, trace);
 }
 template <class Trace>
 void visit_occluded(const char* what, const RaySource& rays, const char* what_rays,
                     std::span<std::uint8_t> occluded, const VisitOptions& options, const Trace& trace) {
-  require_occluded(what, occluded, what_rays, rays.size());
-  visit_parts(what, rays, SpanSink<std::uint8_t>{occluded}, options, trace);
+  const CheckedCall call(what, rays, what_rays, occluded, options);
+  visit_parts(what, call.rays, SpanSink<std::uint8_t>{occluded}, call.options, trace);
 }
 // The options of a call with one ray.
 inline VisitOptions for_one_ray(VisitOptions options) {

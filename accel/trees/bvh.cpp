@@ -1,5 +1,6 @@
 #include <raylanes/bvh.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "../batch/routing.hpp"
 #include "../layout/bvh_arrays.hpp"
 #include "../layout/cost.hpp"
@@ -34,6 +35,7 @@ Bvh::Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options)
     : Bvh(std::make_unique<BvhArrays>(build_bvh(vertices, triangles, options))) {}
 
 Bvh::Bvh(std::unique_ptr<BvhArrays> tree) noexcept : tree_(std::move(tree)) {
+  const QuietFloats quiet;
   const double shared = shared_visits(*tree_);
   tree_->streams_from = streams_from(shared), tree_->rays_wait = do_rays_wait(shared, tree_->bytes());
   make_ready();
@@ -69,6 +71,7 @@ std::size_t Bvh::leaf_count() const noexcept {
   return tree_ ? tree_->corners.count() : 0;
 }
 TreeReport Bvh::report() const {
+  const QuietFloats quiet;
   return tree_ ? report_of(*tree_, leaf_count(), bytes()) : TreeReport{};
 }
 

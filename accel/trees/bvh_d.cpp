@@ -56,6 +56,7 @@ BvhD::BvhD(std::unique_ptr<BvhDArrays> tree) noexcept : tree_(std::move(tree)) {
 }
 
 void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
+  const QuietFloats quiet;
   if (must_build(tree_.get(), vertices, triangles, threads)) {
     *this = BvhD(vertices, triangles, build_again(*tree_, threads));
   } else if (tree_) {
@@ -65,6 +66,7 @@ void BvhD::refit(VertexViewD vertices, IndexView triangles, int threads) {
 }
 
 BvhD BvhD::refitted(VertexViewD vertices, IndexView triangles, int threads) const {
+  const QuietFloats quiet;
   if (must_build(tree_.get(), vertices, triangles, threads))
     return {vertices, triangles, build_again(*tree_, threads)};
   if (!tree_) return {};
@@ -74,9 +76,11 @@ BvhD BvhD::refitted(VertexViewD vertices, IndexView triangles, int threads) cons
 }
 
 double BvhD::sah_cost() const noexcept {
+  const QuietFloats quiet;
   return tree_ ? raylanes::sah_cost(*tree_) : 0;
 }
 double BvhD::decay() const noexcept {
+  const QuietFloats quiet;
   return tree_ && tree_->built_cost > 0 ? raylanes::sah_cost(*tree_) / tree_->built_cost : 1;
 }
 
@@ -200,6 +204,7 @@ std::size_t BvhD::leaf_count() const noexcept {
   return tree_ ? tree_->leaves : 0;
 }
 TreeReport BvhD::report() const {
+  const QuietFloats quiet;
   return tree_ ? report_of(*tree_, tree_->leaves, tree_->bytes()) : TreeReport{};
 }
 

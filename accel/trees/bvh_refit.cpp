@@ -5,6 +5,7 @@
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../layout/cost.hpp"
 #include "../layout/refit.hpp"
@@ -37,6 +38,7 @@ Bvh Bvh::built_again(VertexView vertices, IndexView triangles, int threads) cons
 }
 
 void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
+  const QuietFloats quiet;
   if (must_build(vertices, triangles, threads)) {
     *this = built_again(vertices, triangles, threads);
   } else if (tree_) {
@@ -46,6 +48,7 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
 }
 
 Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
+  const QuietFloats quiet;
   if (must_build(vertices, triangles, threads)) return built_again(vertices, triangles, threads);
   Bvh other = TreeOf::copy(*this);
   if (!tree_) return other;
@@ -55,10 +58,12 @@ Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
 }
 
 double Bvh::sah_cost() const noexcept {
+  const QuietFloats quiet;
   return tree_ ? raylanes::sah_cost(*tree_) : 0;
 }
 
 double Bvh::decay() const noexcept {
+  const QuietFloats quiet;
   return tree_ && tree_->built_cost > 0 ? raylanes::sah_cost(*tree_) / tree_->built_cost : 1;
 }
 

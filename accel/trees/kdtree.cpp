@@ -1,5 +1,6 @@
 #include <raylanes/kdtree.hpp>
 
+#include "../../dispatch/quiet_floats.hpp"
 #include "../layout/kdtree_arrays.hpp"
 #include "../queries/traced_tree.hpp"
 
@@ -41,6 +42,7 @@ std::size_t KdTree::leaf_count() const noexcept {
   return tree_ ? tree_->corners.count() : 0;
 }
 KdReport KdTree::report() const {
+  const QuietFloats quiet;
   return tree_ ? report_of(*tree_) : KdReport{};
 }
 

@@ -188,8 +188,8 @@ class BoundedTree {
   /// Hits must lie in the boxes, enlarged by the slack; then the result does not depend on tree, ISA path or threads.
   /// Inactive rays leave their hit unchanged. A ray that Ray calls invalid hits nothing.
   /// Exceptions of the test pass through; some hits are written then. Throws std::invalid_argument if hits.count is
-  /// not rays.count, hits overlap each other, or a view of some elements is null. Throws it also if the thread count is
-  /// negative, the path is not supported here, or counters are asked for in a build without them.
+  /// not rays.count, hits overlap rays or each other, or a view of some elements is null. Throws it also if the thread
+  /// count is negative, the path is not supported here, or counters are asked for in a build without them.
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
   void closest(RayView rays, HitView hits, Test&& test, const VisitOptions& options = {}) const {

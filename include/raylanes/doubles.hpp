@@ -127,9 +127,9 @@ class BvhD {
   bool occluded(const RayD& ray, const TraceOptionsD& options) const;
 
   /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
-  /// rays and hits must not overlap. Inactive rays leave their hit unchanged.
-  /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap each
-  /// other, or a view of some elements is null. A call that throws has written nothing; but on several threads
+  /// Inactive rays leave their hit unchanged. Options may be views of hits that results go to.
+  /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap rays or
+  /// each other, or a view of some elements is null. A call that throws has written nothing; but on several threads
   /// std::bad_alloc may leave some hits written.
   void closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options = {}) const;
   /// Finds the nearest hit of each ray, given as one array per number.

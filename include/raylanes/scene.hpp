@@ -173,8 +173,9 @@ class Scene {
   /// Returns whether the ray's segment hits any instance, by TriangleTest::exact on the active path.
   bool occluded(const Ray& ray) const;
   /// Finds the nearest hit of each ray: hits[i] belongs to ray i. Inactive rays leave their hit unchanged.
-  /// rays and hits must not overlap. Throws what closest(ray) throws, and std::invalid_argument, before writing
-  /// anything, if there are not as many hits as rays. std::bad_alloc may leave some hits written.
+  /// Options may be views of hits that results go to. Throws what closest(ray) throws, and std::invalid_argument,
+  /// before writing anything, if there are not as many hits as rays, or hits overlap rays. std::bad_alloc may leave
+  /// some hits written.
   void closest(RayView rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
   /// Finds the nearest hit of each ray, given as one array per number.

@@ -162,6 +162,25 @@ void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::ve
   }
 }
 
+// Skips are read as they were, wherever results are written over them.
+void expect_skips_apart(Bytes& bytes, const Scene& scene, const std::vector<Ray>& rays,
+                        const std::vector<SceneHit>& nearest, TraceOptions options, std::uint32_t mask) {
+  const std::size_t n = rays.size(), at = bytes.below(3);
+  std::vector<SceneHit> expected(n), room(n + 2);
+  const SceneHitView to(room.data() + 1, n);
+  options.skip = nearest;
+  scene.closest(rays, expected, options, mask);
+  std::ranges::copy(nearest, room.data() + at);
+  options.skip = SceneHitView(room.data() + at, n);
+  if (bytes.chance(128))
+    scene.closest(rays, to, options, mask);
+  else
+    scene.closest(
+        rays, to, [](auto, auto, auto) {}, options, mask);
+  if (!same_bytes(std::span<SceneHit>(room).subspan(1, n), std::span<SceneHit>(expected)))
+    fail(std::string("skips among the results on ") + options.path->name);
+}
+
 // The first passage of a scene is that of one of its instances, by their own trees.
 void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
                      std::uint32_t mask) {
@@ -266,6 +285,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   }
   expect_same(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
+  if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
