@@ -247,6 +247,14 @@ class Scene {
         options, [&](const TraceOptions& next) { return closest(ray, next, mask); }, rejects);
   }
 
+  /// Computes the unit normal in the scene of each hit: normals[i] belongs to hits[i], hits in scenes or records that
+  /// name an instance and a primitive. It is normal_in_scene() of <raylanes/surface.hpp> for the
+  /// unit_normal() of the triangle; NaN for misses and hits that name no triangle. `threads` is as in TraceOptions.
+  /// Each call visits all leaves of the geometries that are hit. Throws std::invalid_argument, before writing anything,
+  /// if there are not as many normals as hits, hits name no instances or a view points to nothing, or the thread count
+  /// is negative.
+  void normals(PrimitiveView hits, std::span<Float3> normals, int threads = 1) const;
+
   /// Writes the scene as bytes, from which load() makes a scene with the same hits on any machine. docs/tree_file.md
   /// has the format. Throws std::invalid_argument if a geometry has primitives of your own, which no file can hold, and
   /// std::runtime_error if the stream does not take it.

@@ -41,6 +41,36 @@ Point point_at(const AnyRay& ray, double t) {
   return point;
 }
 
+// Turns the normals of an instance: the cofactors of its transform, of the sign of its determinant.
+class NormalMatrix {
+ public:
+  explicit NormalMatrix(const Transform& transform) {
+    double row[3][3], determinant = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) row[i][j] = static_cast<double>(transform.row[i][j]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double(&a)[3] = row[(i + 1) % 3], (&b)[3] = row[(i + 2) % 3];
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t y = (j + 1) % 3, z = (j + 2) % 3;
+        cofactor_[i][j] = a[y] * b[z] - a[z] * b[y];
+        determinant += i == 0 ? cofactor_[i][j] * row[0][j] : 0;
+      }
+    }
+    side_ = determinant / std::abs(determinant);
+  }
+  Float3 operator()(const Float3& normal) const {
+    double turned[3] = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) turned[i] += cofactor_[i][j] * static_cast<double>(normal[j]);
+      turned[i] *= side_;
+    }
+    return unit_of<Float3>(turned);
+  }
+
+ private:
+  double cofactor_[3][3], side_;
+};
+
 }  // namespace detail
 
 /// Returns the unit normal of a triangle, along (v1 − v0) × (v2 − v0), rounded to float; NaN without an area.
@@ -62,22 +92,7 @@ inline Double3 position(const RayD& ray, double t) {
 /// Returns the unit normal in the scene of a normal in the space of an instance. It points out of a solid if the normal
 /// does, also where the transform mirrors the solid. NaN if the transform is singular.
 inline Float3 normal_in_scene(const Transform& transform, const Float3& normal) {
-  double row[3][3], turned[3], determinant = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) row[i][j] = static_cast<double>(transform.row[i][j]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double(&a)[3] = row[(i + 1) % 3], (&b)[3] = row[(i + 2) % 3];
-    turned[i] = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t y = (j + 1) % 3, z = (j + 2) % 3;
-      const double cofactor = a[y] * b[z] - a[z] * b[y];
-      turned[i] += cofactor * static_cast<double>(normal[j]);
-      determinant += i == 0 ? cofactor * row[0][j] : 0;
-    }
-  }
-  const double side = determinant / std::abs(determinant);
-  for (double& x : turned) x *= side;
-  return detail::unit_of<Float3>(turned);
+  return detail::NormalMatrix(transform)(normal);
 }
 
 }  // namespace raylanes

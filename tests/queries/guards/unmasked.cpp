@@ -289,6 +289,10 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     run(calls);
     calls.clear();
     add_nearest<float>(calls, "Scene", solid, of_scene, TraceOptions{.path = path, .threads = threads});
+    calls["Scene::normals"] = [&] {
+      std::vector<Float3> normals(of_scene.hits.size());
+      solid.normals(of_scene.hits, normals, threads);
+    };
     calls["Scene::place"] = [&] {
       Scene other;
       other.add(std::make_shared<const Bvh>(mesh));
