@@ -308,6 +308,8 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     };
     calls["Scene::update"] = [&] { solid.update(); };
     calls["Scene::set_mask"] = [&] { solid.set_mask(0, solid.mask_of(0)); };
+    calls["Scene::set_moving"] = [&] { solid.set_moving(1, true), solid.update(threads); };
+    calls["Scene::report"] = [&] { solid.report(); };
     calls["Scene::tree"] = [&] { solid.tree(0); };
     calls["Scene::geometry_count"] = [&] { solid.geometry_count(); };
     calls["Scene::instance_count"] = [&] { solid.instance_count(); };

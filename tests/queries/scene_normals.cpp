@@ -1,8 +1,8 @@
 // Normals of hits in scenes: each as its triangle and its transform have it.
+#include <raylanes/sphere_tree.hpp>
 #include <raylanes/surface.hpp>
 
-#include "../queries/query_trees.hpp"
-#include "scene_oracle.hpp"
+#include "query_trees.hpp"
 
 namespace raylanes::testing {
 namespace {
