@@ -119,6 +119,10 @@ void add_nearest(Calls& calls, const std::string& of, const Tree& tree, Batch<T,
       tree.occluded_from(b.points[1], b.points, b.occluded, {}, by);
       tree.occluded_from(b.points[1], b.points, b.occluded, reject_even<AnyHit>, {}, by);
     };
+  if constexpr (sizeof...(rest) == 0)
+    calls[of + "::occluded_towards"] = [&, by] {
+      tree.occluded_towards(b.points[1], b.points, b.occluded, by);
+    };
   if constexpr (requires { tree.closest_crossing(b.rays[0], by); })
     calls[of + "::closest_crossing"] = [&, by] {
       for (const auto& ray : b.rays) tree.closest_crossing(ray, by);
