@@ -75,8 +75,8 @@ SceneContenders::SceneContenders(const Parts& parts) : first_(parts.first) {
     const auto tree = std::make_shared<const Bvh>(part);
     scene_.place(scene_.add(tree)), other_.place(other_.add(tree));
   }
-  for (std::uint32_t i = 0; i < first_.size(); ++i)
-    other_.move(i, first_.size() == 1 ? quarter_turn : Transform{});
+  if (first_.size() == 1) other_.move(0, quarter_turn);
+  for (std::uint32_t i = 0; i < first_.size(); ++i) other_.set_moving(i);
   scene_.update(), other_.update();
 }
 
@@ -98,11 +98,13 @@ std::vector<NamedContender> SceneContenders::ways(const Path& path, bool calls) 
            is_one ? timed_contender(mode, around) : timed_contender(mode, by(other)), true}};
 }
 
-std::pair<double, double> SceneContenders::seconds_of_a_move() const {
-  raylanes::Scene scene = scene_;
+std::pair<double, double> seconds_of_a_move(const Parts& parts) {
+  raylanes::Scene scene;
+  for (const Mesh& part : parts.meshes) scene.place(scene.add(Bvh(part)));
+  scene.update();
+  const auto last = static_cast<std::uint32_t>(parts.meshes.size() - 1);
   const auto move = [&](float by) {
-    scene.move(static_cast<std::uint32_t>(scene.instance_count() - 1),
-               {{{1, 0, 0, by}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
+    scene.move(last, {{{1, 0, 0, by}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
     return seconds_of([&] { scene.update(); });
   };
   const double first = move(1);

@@ -46,7 +46,7 @@ struct NamedContender {
 // Whether another primitive for so many rays of a million is within the rounding of a test in floats.
 constexpr double max_others_per_million = 1e4;
 
-// A scene of parts: each part as one instance where it stands, `scene`, and the same parts as instances that moved,
+// A scene of parts: each part as one instance where it stands, `scene`, and the same parts as instances that will move,
 // `scene_moving`. If there is one part, the second scene is turned by a quarter, with rays turned by the same, so that
 // they are exactly the same in the tree's space: `scene_turned`.
 class SceneContenders {
@@ -55,14 +55,15 @@ class SceneContenders {
 
   // Whole batches, or a call for each ray. Hits are numbered as the triangles of the whole mesh.
   std::vector<NamedContender> ways(const Path& path, bool calls) const;
-  // The seconds of update() after the last part was moved, and the same again: the first time it may leave a tree that
-  // parts have in common.
-  std::pair<double, double> seconds_of_a_move() const;
 
  private:
   std::vector<std::uint32_t> first_;  // of each part's triangles
   raylanes::Scene scene_, other_;
 };
+
+// The seconds of update() after the last part was moved, and after it was moved again. The first time it leaves the
+// tree that parts have in common.
+std::pair<double, double> seconds_of_a_move(const Parts& parts);
 
 // Triangles in a tree of boxes, tested by the user's own code.
 class UserContenders {

@@ -7,10 +7,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "../support/filtered.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
+#include "../support/segment_to.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"

@@ -4,16 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <type_traits>
 #include <vector>
 
-#include <raylanes/rays.hpp>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "same_bytes.hpp"
+#include "segment_to.hpp"
 
 namespace raylanes::testing {
 
@@ -35,16 +33,6 @@ struct RayColumns {
     return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, at(6), at(7), column[0].size()};
   }
 };
-
-// The ray that decides whether a point sees a light.
-template <class T>
-RayOf<T> segment_to(const PointOf<T>& light, const PointOf<T>& point, const SegmentEndsOf<T>& ends = {}) {
-  RayOf<T> ray;
-  ray.origin = point, ray.tmin = 1 - ends.end, ray.tmax = 1 - ends.start;
-  if (ends.start > 0) ray.tmax = std::min(ray.tmax, std::nextafter(T(1), T(0)));
-  for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = light[k] - point[k];
-  return ray;
-}
 
 // A rule that keeps some hits of some rays.
 template <class AnyHit>

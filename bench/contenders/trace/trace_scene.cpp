@@ -83,7 +83,7 @@ class Tracer {
   void add_scene() {
     scenes_.emplace(parts_);
     if (!has_parts()) return;
-    const auto [first, next] = scenes_->seconds_of_a_move();
+    const auto [first, next] = seconds_of_a_move(parts_);
     result_.summary += "\n" + std::to_string(parts_.first.size()) +
                        " parts; update() after one of them moved: " + significant(1e3 * first, 3) +
                        " ms, then " + significant(1e3 * next, 3) + " ms";

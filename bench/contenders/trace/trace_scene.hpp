@@ -62,7 +62,7 @@ struct TraceRow {
   // Our speed by Embree's on the same instruction set, by rounds: by its best mode over trees of either quality, by its
   // best single rays over these, by its best mode over its robust tree; and by its best mode from rays in its own
   // layout. Calls with a ray are compared with its calls with a ray. Scenes have the first one only: those whose parts
-  // moved by Embree's instances.
+  // will move by Embree's instances.
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
   std::string ratio_to;  // which its best mode is
   std::optional<Quartiles>
