@@ -163,8 +163,8 @@ Box Leaves::refill(std::size_t index, std::size_t count, const VertexView& verti
     }
     const FourFloats unused = FourFloats::all_bits_from(count - first);
     const FourPoints four[3] = {FourPoints(points[0]), FourPoints(points[1]), FourPoints(points[2])};
-    has_collapsed |= any_equal(four[0].axis, four[1].axis) | any_equal(four[1].axis, four[2].axis) |
-                     any_equal(four[2].axis, four[0].axis);
+    has_collapsed = has_collapsed || any_equal(four[0].axis, four[1].axis) ||
+                    any_equal(four[1].axis, four[2].axis) || any_equal(four[2].axis, four[0].axis);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const FourFloats row = four[corner].axis[axis];
