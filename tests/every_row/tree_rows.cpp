@@ -121,9 +121,33 @@ void check_nearest_triangles(EveryRow& every, const TraversalKernels& rows,
   EXPECT_GT(found, 3u);
 }
 
+// A hit in a scene is that of the tree, numbered by the owner of its triangle: every four of them have one.
+void check_hits_in_scenes(EveryRow& every, const TraversalKernels& rows, const TraversalKernels& of_scalar) {
+  if (!every.offers(rows.closest_in_scene, of_scalar.closest_in_scene)) return;
+  const Trees trees;
+  std::vector<TriangleOwner> slots;
+  for (std::uint32_t first = 0; first < most; first += 4) slots.push_back({first, first + 7, first / 4});
+  const CallRow& call = rows.call.row[static_cast<std::size_t>(TriangleTest::exact)][0];
+  std::size_t found = 0;
+  for (const Ray& ray : some_rays()) {
+    const SceneHit hit = rows.closest_in_scene(trees.views[0], {slots.data(), 2}, ray);
+    const Hit alone = call.closest(trees.views[0], ray);
+    EXPECT_TRUE(same_bytes(hit, of_scalar.closest_in_scene(trees.views[0], {slots.data(), 2}, ray)));
+    SceneHit expected;
+    if (alone) {
+      const TriangleOwner& owner = slots[alone.primitive / 4];
+      expected = {alone.t, alone.u, alone.v, alone.primitive - owner.first, owner.geometry, owner.instance};
+      ++found;
+    }
+    EXPECT_TRUE(same_bytes(hit, expected));
+  }
+  EXPECT_GT(found, 3u);
+}
+
 TEST_P(EveryRow, of_traversal) {
   check_traversal(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal, false);
   check_nearest_triangles(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
+  check_hits_in_scenes(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
   expect_all_called(kernels_of(path()).traversal);
 }
 TEST_P(EveryRow, of_counted_traversal) {
