@@ -143,6 +143,9 @@ void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const 
   static Fence fence(max_rays);
   const std::span<std::uint8_t> occluded(fence.last<std::uint8_t>(rays.size()), rays.size());
   const Float3 from = rays[0].origin;
+  TraceOptions turned = options;  // sides are those that the shared end sees
+  if (options.facing != Facing::any)
+    turned.facing = options.facing == Facing::front ? Facing::back : Facing::front;
   tree.occluded_from(from, VertexView(rays.data(), rays.size(), sizeof(Ray)), occluded, ends, options);
   fence.expect_intact("occluded segments");
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -154,7 +157,7 @@ void expect_segments(const TriangleTree& tree, std::span<const Ray> rays, const 
       ray.tmin *= 2, ray.tmax *= 2;
     }
     if (occluded[i] > 1 ||
-        (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, options)))
+        (options.test == TriangleTest::exact && (occluded[i] != 0) != tree.occluded(ray, turned)))
       fail("segment " + std::to_string(i) + ": occluded is " + std::to_string(occluded[i]));
   }
   const Float3 direction = rays[0].direction;
