@@ -10,9 +10,9 @@
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
-#include "../support/segment_to.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
+#include "../traverse/reference/segment_to.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {

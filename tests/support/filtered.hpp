@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "../../dispatch/table/numbers.hpp"
+#include "../traverse/reference/segment_to.hpp"
 #include "same_bytes.hpp"
-#include "segment_to.hpp"
 
 namespace raylanes::testing {
 

@@ -6,7 +6,7 @@
 
 #include <raylanes/rays.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
+#include "../../../dispatch/table/numbers.hpp"
 
 namespace raylanes::testing {
 
