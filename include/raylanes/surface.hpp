@@ -12,14 +12,14 @@ namespace raylanes {
 namespace detail {
 
 template <class Point>
-Point unit_of(const double (&vector)[3]) {
+[[gnu::always_inline]] inline Point unit_of(const double (&vector)[3]) {
   const double length = std::hypot(vector[0], vector[1], vector[2]);
   Point unit;
   for (std::size_t k = 0; k < 3; ++k) unit[k] = static_cast<typename Point::value_type>(vector[k] / length);
   return unit;
 }
 template <class Point>
-Point unit_normal(const Point (&corner)[3]) {
+[[gnu::always_inline]] inline Point unit_normal(const Point (&corner)[3]) {
   double first[3], second[3], normal[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const auto origin = static_cast<double>(corner[0][k]);

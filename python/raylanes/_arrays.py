@@ -38,8 +38,8 @@ stretch_dtype = np.dtype([("entry", "<f4"), ("exit", "<f4"), ("entered_by", "<u4
                           ("winding", "<i4")])
 """A stretch of a ray within a solid; no_primitive where the ray itself begins or ends."""
 
-double_stretch_dtype = np.dtype({"names": stretch_dtype.names, "formats": ["<f8", "<f8", "<u4", "<u4", "<i4"],
-                                 "itemsize": 32})
+double_stretch_dtype = np.dtype({"names": ["entry", "exit", "entered_by", "left_by", "winding"],
+                                 "formats": ["<f8", "<f8", "<u4", "<u4", "<i4"], "itemsize": 32})
 """A stretch of a ray of float64; otherwise as stretch_dtype."""
 
 count_dtype = np.dtype([("crossings", "<u4"), ("winding", "<i4")])

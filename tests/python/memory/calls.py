@@ -220,7 +220,7 @@ def native_calls_of_scenes(tree):
         scene = _native.Scene()
         scene.add(tree), scene.add(spheres)
         scene.place(0, places, masks), scene.place(1, places[:1], masks[:1])
-        scene.update()
+        scene.update(1)
         return scene
 
     def after_changes(scene):

@@ -69,8 +69,10 @@ def test_skip_in_scenes_names_an_instance():
     assert scene.closest(rays, skip=other).t[0] == 4
     below = raylanes.rays([[0, 0, -19]], [0, 0, -1])
     on_ball = scene.closest(below)
-    assert on_ball.instance[0] == 2 and not scene.closest(below, skip=on_ball).hit[0]
-    assert scene.occluded(below).tolist() == [True] and scene.occluded(below, skip=on_ball).tolist() == [False]
+    # A skipped sphere keeps the hit at which the ray leaves it.
+    assert on_ball.instance[0] == 2 and on_ball.t[0] == 0 and scene.closest(below, skip=on_ball).t[0] == 2
+    above = raylanes.rays([[0, 0, -19]], [0, 0, 1], tmax=1)
+    assert scene.occluded(above).tolist() == [True] and scene.occluded(above, skip=on_ball).tolist() == [False]
     with pytest.raises(TypeError, match="skip: hits in scenes are needed"):
         scene.closest(rays, skip=hits.primitive)
 
@@ -78,7 +80,7 @@ def test_skip_in_scenes_names_an_instance():
 def test_skip_of_spheres():
     spheres = raylanes.SphereTree([[0, 0, 0], [0, 0, -5]], 1)
     rays = raylanes.rays([[0, 0, 1]], [0, 0, -1])
-    assert spheres.closest(rays).t[0] == 0 and spheres.closest(rays, skip=[0]).t[0] == 5
+    assert spheres.closest(rays).t[0] == 0 and spheres.closest(rays, skip=[0]).t[0] == 2
     assert spheres.occluded(rays, skip=[1]).tolist() == [True]
 
 
