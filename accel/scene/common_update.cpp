@@ -105,14 +105,16 @@ void CommonUpdate::keep_tree() {
   if (leaving_ > 0 && tree_->is_shared) tree_ = std::make_shared<CommonTree>(*tree_);
 }
 
-// The members of a new tree.
+// The members of a new tree, which is at most twice as large as the geometries: few are placed twice.
 std::vector<std::uint32_t> CommonUpdate::chosen_members() {
   std::vector<std::uint32_t> chosen;
-  std::size_t triangles = 0;
+  std::size_t triangles = 0, most = 0;
+  for (const auto& geometry : scene_.geometries)
+    if (const auto tree = geometry->triangles()) most += 2 * TreeOf::arrays(*tree)->mesh_triangles;
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     if (standing_[i] != Standing::common && standing_[i] != Standing::waiting) continue;
     const std::size_t with_it = triangles + triangles_of(i);
-    const bool fits = with_it + with_it / 8 <= max_mesh_triangles;
+    const bool fits = with_it <= most && with_it + with_it / 8 <= max_mesh_triangles;
     standing_[i] = fits ? Standing::common : Standing::apart;
     if (fits) triangles = with_it, chosen.push_back(static_cast<std::uint32_t>(i));
   }

@@ -65,6 +65,7 @@ struct SceneReport {
 ///   tree at the next update(), for good. Its triangles are struck out of the tree.
 /// - A new instance is traced by itself until a quarter of the common tree's triangles is new or has left. Then
 ///   update() builds the tree again.
+/// - The tree has at most twice the triangles of the geometries. Further instances are traced by themselves.
 /// - set_moving() keeps an instance out, or lets it in again.
 /// - A tree of one instance is that of its geometry. So an instance alone in a scene costs nothing, nor does the only
 ///   one that may be in the tree, if its box has a quarter of the scene's surface.
