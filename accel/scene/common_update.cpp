@@ -110,7 +110,8 @@ std::vector<std::uint32_t> CommonUpdate::chosen_members() {
   std::vector<std::uint32_t> chosen;
   std::size_t triangles = 0, most = 0;
   for (const auto& geometry : scene_.geometries)
-    if (const auto tree = geometry->triangles()) most += 2 * TreeOf::arrays(*tree)->mesh_triangles;
+    if (const auto tree = geometry->triangles(); tree != nullptr && TreeOf::arrays(*tree) != nullptr)
+      most += 2 * TreeOf::arrays(*tree)->mesh_triangles;
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     if (standing_[i] != Standing::common && standing_[i] != Standing::waiting) continue;
     const std::size_t with_it = triangles + triangles_of(i);
