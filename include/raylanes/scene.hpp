@@ -269,7 +269,7 @@ class Scene {
   Box bounds() const noexcept;
   /// Returns the bytes of the instances, the tree over them and the common tree, without geometries.
   std::size_t bytes() const noexcept;
-  /// Returns what the common tree holds. While it is out of use after set_mask(), it has no instances.
+  /// Returns what the common tree holds: no instances from a set_mask() of a member to the next update().
   SceneReport report() const noexcept;
 
  private:
