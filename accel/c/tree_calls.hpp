@@ -51,6 +51,13 @@ Hits hits_of(void* first, std::size_t count, std::size_t stride) {
   return {first, count, checked_stride("hits", first, count, stride, sizeof(HitOf<Number>))};
 }
 
+PointOf<Number> point_of(const char* what, const Number* numbers) {
+  require_pointer(what, numbers);
+  PointOf<Number> point;
+  std::memcpy(&point, numbers, sizeof point);
+  return point;
+}
+
 // The name of a file in UTF-8, on every system.
 std::filesystem::path file_of(const char* name) {
   require_pointer("file", name);
@@ -188,6 +195,28 @@ raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYL
       *occluded = tree_of(tree).occluded(one);
     else
       *occluded = tree_of(tree).occluded(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1));
+  });
+}
+
+raylanes_status RAYLANES_CALL(occluded_from)(const RAYLANES_HANDLE* tree, const Number* from,
+                                             const void* points, std::size_t n, std::size_t stride,
+                                             Number start, Number end, std::uint8_t* occluded,
+                                             const raylanes_ray_options* options) {
+  return status_of([&] {
+    const SegmentEndsOf<Number> ends{start, end};
+    tree_of(tree).occluded_from(point_of("from", from), vertices_of("points", points, n, stride),
+                                span_of<std::uint8_t>("occluded", occluded, n), ends,
+                                ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
+  });
+}
+
+raylanes_status RAYLANES_CALL(occluded_towards)(const RAYLANES_HANDLE* tree, const Number* direction,
+                                                const void* points, std::size_t n, std::size_t stride,
+                                                std::uint8_t* occluded, const raylanes_ray_options* options) {
+  return status_of([&] {
+    tree_of(tree).occluded_towards(point_of("direction", direction), vertices_of("points", points, n, stride),
+                                   span_of<std::uint8_t>("occluded", occluded, n),
+                                   ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
   });
 }
 

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = ROOT / 'include/raylanes'
 LINK = re.compile(r'(!?)\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)')
 BOILERPLATE = re.compile(r'#pragma once|#include|namespace raylanes \{|\}  // namespace raylanes|struct \w+;$'
-                         r'|#(ifndef|define) RAYLANES_RAYLANES_H')
+                         r'|#(ifndef|define) RAYLANES_RAYLANES_(TYPES_)?H')
 KINDS = ('class', 'struct', 'enum', 'function', 'variable', 'typedef', 'concept')
 made = tempfile.TemporaryDirectory()
 
@@ -69,7 +69,7 @@ def names_of_headers():
 
 def names_of_compound(compound):
     scope, kind = compound.findtext('compoundname'), compound.get('kind')
-    if kind == 'file' and scope == 'raylanes.h':
+    if kind == 'file' and scope in ('raylanes.h', 'raylanes_types.h'):
         kind = 'namespace'  # as it were
     elif kind not in ('class', 'struct', 'namespace', 'concept') or not scope.startswith('raylanes'):
         return

@@ -12,6 +12,8 @@
 
 #include <raylanes/doubles.hpp>
 
+#include "../fuzz/any_doubles.hpp"
+#include "../fuzz/any_mesh.hpp"
 #include "../fuzz/damaged_file.hpp"
 #include "../fuzz/strided.hpp"
 #include "calls.hpp"
@@ -19,6 +21,30 @@
 namespace raylanes::testing {
 
 inline constexpr std::size_t max_elements = 40;
+
+// A mesh and rays of any numbers.
+template <class Number>
+struct World;
+template <>
+struct World<float> {
+  explicit World(Bytes& bytes) : mesh(any_mesh(bytes)) {
+    Coordinates coordinates(bytes);
+    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
+      rays.push_back(any_ray(bytes, coordinates, mesh));
+  }
+  Mesh mesh;
+  std::vector<Ray> rays;
+};
+template <>
+struct World<double> {
+  explicit World(Bytes& bytes) : coordinates(bytes), mesh(any_double_mesh(bytes, coordinates)) {
+    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
+      rays.push_back(any_double_ray(bytes, coordinates, mesh));
+  }
+  DoubleCoordinates coordinates;
+  DoubleMesh mesh;
+  std::vector<RayD> rays;
+};
 
 class AnyArguments {
  public:

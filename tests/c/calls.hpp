@@ -36,6 +36,8 @@ struct CallsOf;
     static constexpr auto occluded = raylanes_bvh##d##_occluded;                   \
     static constexpr auto closest1 = raylanes_bvh##d##_closest1;                   \
     static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;                 \
+    static constexpr auto occluded_from = raylanes_bvh##d##_occluded_from;         \
+    static constexpr auto occluded_towards = raylanes_bvh##d##_occluded_towards;   \
     static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing;   \
     static constexpr auto closest_crossing1 = raylanes_bvh##d##_closest_crossing1; \
     static constexpr auto count_crossings = raylanes_bvh##d##_count_crossings;     \

@@ -4,37 +4,12 @@
 #include <raylanes/roots.hpp>
 
 #include "../../dispatch/table/numbers.hpp"
-#include "../fuzz/any_doubles.hpp"
-#include "../fuzz/any_mesh.hpp"
 #include "../support/same_bytes.hpp"
 #include "any_arguments.hpp"
 #include "calls.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-template <class Number>
-struct World;
-template <>
-struct World<float> {
-  explicit World(Bytes& bytes) : mesh(any_mesh(bytes)) {
-    Coordinates coordinates(bytes);
-    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
-      rays.push_back(any_ray(bytes, coordinates, mesh));
-  }
-  Mesh mesh;
-  std::vector<Ray> rays;
-};
-template <>
-struct World<double> {
-  explicit World(Bytes& bytes) : coordinates(bytes), mesh(any_double_mesh(bytes, coordinates)) {
-    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
-      rays.push_back(any_double_ray(bytes, coordinates, mesh));
-  }
-  DoubleCoordinates coordinates;
-  DoubleMesh mesh;
-  std::vector<RayD> rays;
-};
 
 template <class Number>
 class Caller {
@@ -57,14 +32,16 @@ class Caller {
     const auto* const tree = arguments_.pointer(of_c_.get());
     const std::size_t n = arguments_.count(world_.rays.size());
     const void* const rays = arguments_.first(rays_);
-    const std::size_t kind = bytes_.below(13);
-    const std::size_t stride = arguments_.stride(rays_, kind < 8    ? sizeof(RayOf<Number>)
-                                                        : kind < 12 ? 3 * sizeof(Number)
-                                                                    : sizeof(std::uint32_t));
+    const std::size_t kind = bytes_.below(15);
+    const std::size_t stride = arguments_.stride(rays_, kind < 8     ? sizeof(RayOf<Number>)
+                                                        : kind == 12 ? sizeof(std::uint32_t)
+                                                                     : 3 * sizeof(Number));
     if (kind < 8)
       ask_rays(kind, tree, rays, n, stride);
     else if (kind == 12)
       ask_corners(tree, rays, n, stride);
+    else if (kind > 12)
+      ask_shadows(kind == 13, tree, rays, n, stride);
     else
       ask_points(kind, tree, rays, n, stride);
     rays_.expect_intact("rays");
@@ -163,6 +140,34 @@ class Caller {
             [&](raylanes_lists** lists) { return C::crossings(tree, rays, n, stride, lists, c); },
             [&] { return tree_.crossings(world_.rays, list); });
     }
+  }
+
+  // The shadows of a light or of a sun, at the origins of rays.
+  void ask_shadows(bool is_of_light, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
+    const VertexRecords<Number> points(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
+    PointOf<Number> light;
+    for (Number& number : light) number = bytes_.number<Number>();
+    if (!world_.rays.empty() && bytes_.chance(192))
+      light = is_of_light ? world_.rays[0].origin : world_.rays[0].direction;
+    SegmentEndsOf<Number> ends;
+    if (bytes_.chance(128)) ends = {bytes_.number<Number>(), bytes_.number<Number>()};
+    static Fence fence(sizeof light);
+    Number* const given = fence.last<Number>(3);
+    std::copy(light.begin(), light.end(), given);
+    const Number* const from = arguments_.pointer(given);
+    const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size(), AfterRecords<Hit>());
+    const auto trace = arguments_.template ray_options_of_cpp<typename C::Trace>(world_.rays.size());
+    compare<std::uint8_t>(
+        is_of_light ? "occluded_from" : "occluded_towards", 0,
+        [&](void* bits, std::size_t) {
+          auto* const dark = static_cast<std::uint8_t*>(bits);
+          return is_of_light ? C::occluded_from(tree, from, rays, n, stride, ends.start, ends.end, dark, c)
+                             : C::occluded_towards(tree, from, rays, n, stride, dark, c);
+        },
+        [&](auto& dark) {
+          is_of_light ? tree_.occluded_from(light, points, dark, ends, trace)
+                      : tree_.occluded_towards(light, points, dark, trace);
+        });
   }
 
   void ask_points(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {

@@ -5,108 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../../dispatch/table/numbers.hpp"
-#include "../doubles/double_cases.hpp"
-#include "../support/same_bytes.hpp"
-#include "../support/supported_paths.hpp"
-#include "apart.hpp"
-#include "calls.hpp"
+#include "as_cpp.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-constexpr std::size_t count = 150;
-
-template <class Number>
-struct Input;
-template <>
-struct Input<float> {
-  Mesh mesh = triangle_soup(300, 0.3f, 11);
-  std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 12);
-};
-template <>
-struct Input<double> {
-  DoubleMesh mesh = moved(triangle_soup(300, 0.3f, 11), 3, {1e6, 0, -1e6});
-  std::vector<RayD> rays = aimed_rays(mesh, count, 12);
-};
-
-template <class Number>
-class CCalls : public ::testing::Test, public Input<Number> {
- public:
-  using OfNumber = CallsOf<Number>;
-  using HitOfNumber = HitOf<Number>;
-
-  typename OfNumber::Tree cpp_tree{this->mesh.vertices, this->mesh.triangles};
-  TreeOfC<Number> tree_of_c = made<TreeOfC<Number>>([&](auto** tree_address) {
-    Apart<PointOf<Number>> vertices(this->mesh.vertices, 5);
-    Apart<Index3> triangles(this->mesh.triangles, 3);
-    EXPECT_EQ(OfNumber::create(tree_address, vertices.data(), this->mesh.vertices.size(), vertices.stride(),
-                               triangles.data(), this->mesh.triangles.size(), triangles.stride(), nullptr),
-              RAYLANES_OK);
-  });
-  Apart<RayOf<Number>> rays_of_c{this->rays, 4};
-
-  // Calls check(options of C, of C++) with each option that queries of rays have.
-  template <class Options, class Check>
-  void each_ray_option(const Check& check) {
-    std::vector<HitOfNumber> hits(count);
-    cpp_tree.closest(this->rays, hits);
-    Random random(13);
-    const std::vector<std::vector<std::uint8_t>> masks = masks_for(count, random);
-    for (const Path* path : supported_paths())
-      for (const int threads : {1, 2, 0})
-        for (std::int32_t variant = 0; variant < 6; ++variant) {
-          SCOPED_TRACE(std::string(path->name) + ", variant " + std::to_string(variant));
-          raylanes_ray_options c = default_ray_options();
-          Options options;
-          c.path = path->name, options.path = path;
-          c.threads = options.threads = threads;
-          if (variant < 3) c.facing = variant, options.facing = static_cast<Facing>(variant);
-          if (variant == 3) c.active = options.active = masks[5].data();
-          if (variant == 4) c.skip = &hits[0].primitive, c.skip_stride = sizeof hits[0], options.skip = hits;
-          if constexpr (requires { options.after; })
-            if (variant == 5) c.after = hits.data(), c.after_stride = sizeof hits[0], options.after = hits;
-          check(c, options);
-        }
-  }
-  // Calls check(options of C, of C++) with each path and rule.
-  template <class Options, class Check>
-  void each_point_option(const Check& check) {
-    for (const Path* path : supported_paths())
-      for (std::int32_t variant = 0; variant < 5; ++variant) {
-        SCOPED_TRACE(std::string(path->name) + ", variant " + std::to_string(variant));
-        raylanes_point_options c = default_point_options();
-        Options options;
-        c.path = path->name, options.path = path;
-        c.threads = options.threads = variant % 3;
-        if constexpr (requires { options.rule; })
-          c.rule = variant % 4, options.rule = static_cast<InsideRule>(c.rule);
-        if constexpr (requires { options.max_distance; })
-          if (variant > 1) c.max_distance = options.max_distance = Number(0.25) * Number(variant);
-        if constexpr (requires { options.accuracy; })
-          if (variant > 1) c.accuracy = options.accuracy = 0.01 * variant;
-        check(c, options);
-      }
-  }
-  // Both results with the same bytes before, of which inactive elements keep theirs.
-  template <class Result, class OfC, class OfCpp>
-  void expect_same(std::size_t gap, const OfC& of_c, const OfCpp& of_cpp) {
-    Apart<Result> results(count, gap);
-    std::vector<Result> expected = results.values();
-    ASSERT_EQ(of_c(results), RAYLANES_OK) << raylanes_last_message();
-    of_cpp(expected);
-    EXPECT_TRUE(same_bytes(results.values(), expected));
-  }
-  template <class Item>
-  void expect_lists(const ListsOfC& lists, const RayLists<Item>& expected) {
-    ASSERT_NE(lists, nullptr) << raylanes_last_message();
-    const std::size_t* const offsets = raylanes_lists_offsets(lists.get());
-    EXPECT_TRUE(same_bytes(std::vector(offsets, offsets + count + 1), expected.offsets));
-    const auto* const items = static_cast<const Item*>(raylanes_lists_items(lists.get()));
-    EXPECT_TRUE(same_bytes(std::vector<Item>(items, items + expected.items.size()), expected.items));
-  }
-  auto points() const { return VertexRecords<Number>(this->rays.data(), count, sizeof(RayOf<Number>)); }
-};
 using Numbers = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(CCalls, Numbers);
 
@@ -136,6 +39,38 @@ TYPED_TEST(CCalls, write_the_hits_of_the_classes) {
         },
         [&](auto& occluded) { this->cpp_tree.occluded(this->rays, occluded, options); });
   });
+}
+
+TYPED_TEST(CCalls, write_the_shadows_of_the_classes) {
+  using C = CallsOf<TypeParam>;
+  const auto light = this->rays[0].origin, direction = this->rays[1].direction;
+  std::vector<PointOf<TypeParam>> places;
+  for (const auto& ray : this->rays) places.push_back(ray.origin);
+  Apart<PointOf<TypeParam>> c_points(places, 5);
+  Apart<PointOf<TypeParam>> from({light}, 0), towards({direction}, 0);
+  for (const SegmentEndsOf<TypeParam> ends : {SegmentEndsOf<TypeParam>{}, {TypeParam(0.25), TypeParam(0.75)}})
+    this->template each_ray_option<typename C::Trace>([&](const auto& c, const auto& options) {
+      this->template expect_same<std::uint8_t>(
+          0,
+          [&](auto& occluded) {
+            return C::occluded_from(this->tree_of_c.get(), static_cast<const TypeParam*>(from.data()),
+                                    c_points.data(), count, c_points.stride(), ends.start, ends.end,
+                                    static_cast<std::uint8_t*>(occluded.data()), &c);
+          },
+          [&](auto& occluded) {
+            this->cpp_tree.occluded_from(light, this->points(), occluded, ends, options);
+          });
+      this->template expect_same<std::uint8_t>(
+          0,
+          [&](auto& occluded) {
+            return C::occluded_towards(this->tree_of_c.get(), static_cast<const TypeParam*>(towards.data()),
+                                       c_points.data(), count, c_points.stride(),
+                                       static_cast<std::uint8_t*>(occluded.data()), &c);
+          },
+          [&](auto& occluded) {
+            this->cpp_tree.occluded_towards(direction, this->points(), occluded, options);
+          });
+    });
 }
 
 TYPED_TEST(CCalls, write_the_hits_of_one_ray) {

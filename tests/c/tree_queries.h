@@ -31,6 +31,70 @@ static void test_hits(const TREE* tree) {
   EXPECT(hits[0].t == 1.5 && hits[1].primitive == RAYLANES_NO_PRIMITIVE && hits[2].t == 0.25);
 }
 
+static void expect_three(const uint8_t* bits, uint8_t a, uint8_t b, uint8_t c) {
+  EXPECT(bits[0] == a && bits[1] == b && bits[2] == c);
+}
+
+static void test_shadows(const TREE* tree) {
+  static const NUMBER above[3] = {0.25, 0.25, 2}, below[3] = {0.25, 0.25, -3},
+                      within[3] = {0.125, 0.125, 0.25};
+  static const NUMBER up[3] = {0, 0, 4}, down[3] = {0, 0, -0.5}, nowhere[3] = {0, 0, 0};
+  const uint32_t floors[3] = {0, 0, RAYLANES_NO_PRIMITIVE};
+  const uint8_t active = 5;
+  raylanes_ray_options options = ray_options();
+  unsigned char apart[1 + 3 * 29];
+  uint8_t occluded[3];
+  size_t i;
+  GOOD(CALL(occluded_from)(tree, above, points, 3, 0, 0, 1, occluded, NULL));
+  expect_three(occluded, 1, 1, 1);
+  GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 1, occluded, NULL));
+  expect_three(occluded, 1, 0, 1);
+  GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 0.5, occluded, NULL));
+  expect_three(occluded, 0, 0, 0);
+  GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0.984375, 1, occluded, NULL));
+  expect_three(occluded, 0, 0, 1);
+  GOOD(CALL(occluded_from)(tree, points, points, 3, 0, 0, 1, occluded, NULL));
+  expect_three(occluded, 0, 1, 1);
+  GOOD(CALL(occluded_towards)(tree, up, points, 3, 0, occluded, NULL));
+  expect_three(occluded, 1, 1, 1);
+  GOOD(CALL(occluded_towards)(tree, down, points, 3, 0, occluded, NULL));
+  expect_three(occluded, 1, 0, 1);
+  GOOD(CALL(occluded_towards)(tree, nowhere, points, 3, 0, occluded, NULL));
+  expect_three(occluded, 0, 0, 0);
+  GOOD(CALL(occluded_from)(tree, up, NULL, 0, 0, 0, 1, NULL, NULL));
+  GOOD(CALL(occluded_towards)(tree, up, NULL, 0, 0, NULL, NULL));
+
+  // At any alignment.
+  for (i = 0; i < 3; ++i) memcpy(apart + 1 + 29 * i, points + 3 * i, 3 * sizeof *points);
+  GOOD(CALL(occluded_from)(tree, below, apart + 1, 3, 29, 0, 1, occluded, NULL));
+  expect_three(occluded, 1, 0, 1);
+  GOOD(CALL(occluded_towards)(tree, down, apart + 1, 3, 29, occluded, NULL));
+  expect_three(occluded, 1, 0, 1);
+
+  options.skip = floors, options.threads = 2, options.path = "scalar";
+  GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 1, occluded, &options));
+  expect_three(occluded, 0, 0, 1);
+  GOOD(CALL(occluded_towards)(tree, down, points, 3, 0, occluded, &options));
+  expect_three(occluded, 0, 0, 1);
+  // From within, the light sees the back of the floor.
+  options = ray_options();
+  options.facing = RAYLANES_FACING_BACK;
+  GOOD(CALL(occluded_from)(tree, within, points, 2, 0, 0, 1, occluded, &options));
+  EXPECT(occluded[1] == 1);
+  options.facing = RAYLANES_FACING_FRONT;
+  GOOD(CALL(occluded_from)(tree, within, points, 2, 0, 0, 1, occluded, &options));
+  EXPECT(occluded[1] == 0);
+  GOOD(CALL(occluded_towards)(tree, down, points, 2, 0, occluded, &options));
+  EXPECT(occluded[0] == 0);
+  options = ray_options();
+  options.active = &active;
+  memset(occluded, 7, sizeof occluded);
+  GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 1, occluded, &options));
+  expect_three(occluded, 1, 7, 1);
+  GOOD(CALL(occluded_towards)(tree, nowhere, points, 3, 0, occluded, &options));
+  expect_three(occluded, 0, 7, 0);
+}
+
 static void test_options_of_rays(const TREE* tree) {
   raylanes_ray_options options = ray_options();
   RECORD(hit) hits[3], again[3], hit;

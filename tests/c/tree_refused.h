@@ -12,6 +12,8 @@ static void test_wrong_options(const TREE* tree, void (*change)(raylanes_ray_opt
   REFUSED(CALL(closest_crossing1)(tree, rays, hits, &options), word);
   REFUSED(CALL(occluded)(tree, rays, 3, 0, occluded, &options), word);
   REFUSED(CALL(occluded1)(tree, rays, occluded, &options), word);
+  REFUSED(CALL(occluded_from)(tree, points, points, 3, 0, 0, 1, occluded, &options), word);
+  REFUSED(CALL(occluded_towards)(tree, points, points, 3, 0, occluded, &options), word);
   REFUSED(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), word);
   REFUSED(CALL(crossings)(tree, rays, 3, 0, &lists, &options), word);
   EXPECT(hits[0].t == 7 && hits[2].t == 7 && occluded[0] == 7 && lists == NULL);
@@ -96,6 +98,27 @@ static void test_refused_rays(const TREE* tree) {
   test_wrong_options(tree, set_path, "sse9");
   test_wrong_options(tree, set_size, "options");
   test_wrong_options(tree, set_skip, "skip");
+}
+
+static void test_refused_shadows(const TREE* tree) {
+  NUMBER own[9] = {7, 7, 7, 7, 7, 7, 7, 7, 7};
+  uint8_t occluded[3] = {7, 7, 7};
+  uint8_t* const within = (uint8_t*)own + sizeof own - 3;
+  REFUSED(CALL(occluded_from)(NULL, own, points, 3, 0, 0, 1, occluded, NULL), "tree");
+  REFUSED(CALL(occluded_from)(tree, NULL, points, 3, 0, 0, 1, occluded, NULL), "from");
+  REFUSED(CALL(occluded_from)(tree, own, NULL, 3, 0, 0, 1, occluded, NULL), "points");
+  REFUSED(CALL(occluded_from)(tree, own, points, 3, 3 * sizeof *own - 1, 0, 1, occluded, NULL), "points");
+  REFUSED(CALL(occluded_from)(tree, own, points, SIZE_MAX, 0, 0, 1, occluded, NULL), "address space");
+  REFUSED(CALL(occluded_from)(tree, own, points, 3, 0, 0, 1, NULL, NULL), "occluded");
+  REFUSED(CALL(occluded_from)(tree, own, own, 3, 0, 0, 1, within, NULL), "overlap");
+  REFUSED(CALL(occluded_towards)(NULL, own, points, 3, 0, occluded, NULL), "tree");
+  REFUSED(CALL(occluded_towards)(tree, NULL, points, 3, 0, occluded, NULL), "direction");
+  REFUSED(CALL(occluded_towards)(tree, own, NULL, 3, 0, occluded, NULL), "points");
+  REFUSED(CALL(occluded_towards)(tree, own, points, 3, 3 * sizeof *own - 1, occluded, NULL), "points");
+  REFUSED(CALL(occluded_towards)(tree, own, points, 3, SIZE_MAX, occluded, NULL), "address space");
+  REFUSED(CALL(occluded_towards)(tree, own, points, 3, 0, NULL, NULL), "occluded");
+  REFUSED(CALL(occluded_towards)(tree, own, own, 3, 0, within, NULL), "overlap");
+  EXPECT(occluded[0] == 7 && occluded[2] == 7 && own[8] == 7);
 }
 
 static void test_refused_points(const TREE* tree) {

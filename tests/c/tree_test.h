@@ -126,8 +126,10 @@ void TEST_TREES(void) {
   test_empty_trees();
   tree = tetrahedron();
   test_hits(tree);
+  test_shadows(tree);
   test_options_of_rays(tree);
   test_refused_rays(tree);
+  test_refused_shadows(tree);
   test_lists(tree);
   test_triangles(tree);
   test_refused_triangles(tree);

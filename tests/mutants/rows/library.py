@@ -41,6 +41,8 @@ MUTANTS = [
          'c.max_count'), source='accel/c/trees.cpp'),
     *rows_of('accel/c/stream.cpp', 'test_c_calls',
         ('c: loaded bytes have no end', 'to < 0 || to > size', 'true')),
+    *rows_of('accel/c/tree_calls.hpp', 'test_c_calls',
+        ('c: the ends of segments are swapped', 'ends{start, end}', 'ends{end, start}'), source='accel/c/trees.cpp'),
     *rows_of('accel/trees/bvh_d_build.cpp', 'test_doubles',
         ('doubles: frames of thin meshes overflow', 'std::min(-1 - exponent_of_largest(half), 900)',
          '-1 - exponent_of_largest(half)')),
