@@ -23,7 +23,8 @@ inline std::size_t item_bytes(const py::array& array) {
   return not_null(PyObject_GetAttr(array.ptr(), name)).cast<std::size_t>();
 }
 
-inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
+// may_overlap: whether rows may lie nearer than they are long, or all in one place.
+inline Rows rows_of(const py::array& array, std::size_t row_bytes, bool may_overlap = false) {
   const std::size_t size = item_bytes(array);
   const std::size_t columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
   if (array.ndim() < 1 || array.ndim() > 2 || columns * size != row_bytes)
@@ -31,7 +32,8 @@ inline Rows rows_of(const py::array& array, std::size_t row_bytes) {
   const auto count = static_cast<std::size_t>(array.shape(0));
   const auto at_least = static_cast<py::ssize_t>(row_bytes);
   const py::ssize_t stride = count > 1 ? array.strides(0) : at_least;
-  if (stride < at_least || (count > 0 && columns > 1 && array.strides(1) != static_cast<py::ssize_t>(size)))
+  if (stride < (may_overlap ? 0 : at_least) ||
+      (count > 0 && columns > 1 && array.strides(1) != static_cast<py::ssize_t>(size)))
     throw std::invalid_argument("the rows of an array lie otherwise than views have them");
   // No byte of it is written but through an array that writable_rows_of has looked at.
   return {const_cast<std::byte*>(static_cast<const std::byte*>(array.data())), count,
@@ -63,10 +65,33 @@ RayRecords<Record> records_of(const py::array& array) {
   const Rows rows = rows_of(array, sizeof(Record));
   return {rows.first, rows.count, rows.stride};
 }
+// Rays of Python: an array of them, or the tuple (origins, directions, tmin, tmax) of an array each.
 template <class T>
-RayRecords<RayOf<T>> rays_of(const py::array& array) {
-  return records_of<RayOf<T>>(array);
-}
+class RaysOf : public RayRecords<RayOf<T>> {
+  using Records = RayRecords<RayOf<T>>;
+  RayParts apart_;
+
+ public:
+  explicit RaysOf(const py::object& rays) {
+    if (!py::isinstance<py::tuple>(rays)) {
+      Records::operator=(records_of<RayOf<T>>(rays.cast<py::array>()));
+      return;
+    }
+    const auto arrays = rays.cast<py::tuple>();
+    const auto part = [&](std::size_t i, std::size_t numbers) {
+      const Rows rows = rows_of(py::object(arrays[i]).cast<py::array>(), numbers * sizeof(T), true);
+      if (i > 0 && rows.count != apart_.count)
+        throw std::invalid_argument("the parts of rays have different sizes");
+      apart_.count = rows.count;
+      return RayParts::Part{rows.first, rows.stride};
+    };
+    apart_.origin = part(0, 3), apart_.direction = part(1, 3), apart_.tmin = part(2, 1),
+    apart_.tmax = part(3, 1);
+    Records::operator=(apart_);
+  }
+  RaysOf(const RaysOf&) = delete;
+  RaysOf& operator=(const RaysOf&) = delete;
+};
 
 // Hits, or any other records to write.
 template <class Record>

@@ -6,10 +6,10 @@
 namespace raylanes::python {
 namespace {
 
-void closest_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
+void closest_in_scene(const SharedScene& shared, const py::object& rays, const py::array& hits,
                       const py::tuple& how, const py::object& active, std::uint32_t mask,
                       const py::object& after, const py::object& filter) {
-  const RayView from = rays_of<float>(rays);
+  const RaysOf<float> from(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
   options.after = hits_behind<SceneHit>(after);
@@ -19,10 +19,10 @@ void closest_in_scene(const SharedScene& shared, const py::array& rays, const py
                            });
 }
 
-void crossing_in_scene(const SharedScene& shared, const py::array& rays, const py::array& hits,
+void crossing_in_scene(const SharedScene& shared, const py::object& rays, const py::array& hits,
                        const py::tuple& how, const py::object& active, std::uint32_t mask,
                        const py::object& after) {
-  const RayView from = rays_of<float>(rays);
+  const RaysOf<float> from(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
   options.after = hits_behind<SceneHit>(after);
@@ -31,10 +31,10 @@ void crossing_in_scene(const SharedScene& shared, const py::array& rays, const p
   });
 }
 
-void occluded_in_scene(const SharedScene& shared, const py::array& rays, const py::array& occluded,
+void occluded_in_scene(const SharedScene& shared, const py::object& rays, const py::array& occluded,
                        const py::tuple& how, const py::object& active, std::uint32_t mask,
                        const py::object& filter) {
-  const RayView from = rays_of<float>(rays);
+  const RaysOf<float> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<float>(how, active, from.count);
   filtered_query<SceneHit>(shared, options, how[7], from.count, filter,

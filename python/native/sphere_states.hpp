@@ -82,10 +82,10 @@ inline VisitOptions visit_options(const py::tuple& how, const py::object& active
   return {.path = options.path, .threads = options.threads, .active = options.active, .skip = options.skip};
 }
 
-inline void closest_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& hits,
+inline void closest_spheres(const SharedSpheres& shared, const py::object& rays, const py::array& hits,
                             const py::tuple& how, const py::object& active, const py::object& after,
                             const py::object& filter) {
-  const RayView from = rays_of<float>(rays);
+  const RaysOf<float> from(rays);
   const auto to = hits_of<float>(hits);
   auto options = visit_options(how, active, from.count);
   options.after = hits_behind<Hit>(after);
@@ -95,9 +95,10 @@ inline void closest_spheres(const SharedSpheres& shared, const py::array& rays, 
                       });
 }
 
-inline void occluded_by_spheres(const SharedSpheres& shared, const py::array& rays, const py::array& occluded,
-                                const py::tuple& how, const py::object& active, const py::object& filter) {
-  const RayView from = rays_of<float>(rays);
+inline void occluded_by_spheres(const SharedSpheres& shared, const py::object& rays,
+                                const py::array& occluded, const py::tuple& how, const py::object& active,
+                                const py::object& filter) {
+  const RaysOf<float> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = visit_options(how, active, from.count);
   filtered_query<Hit>(shared, options, how[7], from.count, filter,

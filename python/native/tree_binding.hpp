@@ -143,9 +143,9 @@ Options plain_options(const char* path, int threads, const py::object& active, s
 }
 
 template <class T>
-void closest(const SharedTree<T>& shared, const py::array& rays, const py::array& hits, const py::tuple& how,
+void closest(const SharedTree<T>& shared, const py::object& rays, const py::array& hits, const py::tuple& how,
              const py::object& active, const py::object& after, const py::object& filter) {
-  const auto from = rays_of<T>(rays);
+  const RaysOf<T> from(rays);
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
   options.after = hits_behind<HitOf<T>>(after);
@@ -156,9 +156,9 @@ void closest(const SharedTree<T>& shared, const py::array& rays, const py::array
 }
 
 template <class T>
-void closest_crossing(const SharedTree<T>& shared, const py::array& rays, const py::array& hits,
+void closest_crossing(const SharedTree<T>& shared, const py::object& rays, const py::array& hits,
                       const py::tuple& how, const py::object& active, const py::object& after) {
-  const auto from = rays_of<T>(rays);
+  const RaysOf<T> from(rays);
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
   options.after = hits_behind<HitOf<T>>(after);
@@ -167,9 +167,9 @@ void closest_crossing(const SharedTree<T>& shared, const py::array& rays, const 
 }
 
 template <class T>
-void occluded(const SharedTree<T>& shared, const py::array& rays, const py::array& occluded,
+void occluded(const SharedTree<T>& shared, const py::object& rays, const py::array& occluded,
               const py::tuple& how, const py::object& active, const py::object& filter) {
-  const auto from = rays_of<T>(rays);
+  const RaysOf<T> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, from.count);
   filtered_query<HitOf<T>>(shared, options, how[7], from.count, filter,
@@ -210,10 +210,10 @@ void corners(const SharedTree<T>& shared, const py::array& primitives, const py:
 
 // Offsets and items, as bytes.
 template <class T, auto list>
-py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_t max_count,
+py::tuple lists(const SharedTree<T>& shared, const py::object& rays, std::uint32_t max_count,
                 const char* facing, const char* path, int threads, const py::object& active,
                 const py::object& progress, const py::object& skip) {
-  const auto from = rays_of<T>(rays);
+  const RaysOf<T> from(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
@@ -224,10 +224,10 @@ py::tuple lists(const SharedTree<T>& shared, const py::array& rays, std::uint32_
 }
 
 template <class T>
-void count_crossings(const SharedTree<T>& shared, const py::array& rays, const py::array& counts,
+void count_crossings(const SharedTree<T>& shared, const py::object& rays, const py::array& counts,
                      const char* facing, const char* path, int threads, const py::object& active,
                      const py::object& progress, const py::object& skip) {
-  const auto from = rays_of<T>(rays);
+  const RaysOf<T> from(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);

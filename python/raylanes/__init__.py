@@ -2,7 +2,7 @@
 
     >>> import numpy as np, raylanes
     >>> tree = raylanes.Bvh(vertices, faces)                # (n, 3) floats, (m, 3) integers
-    >>> hits = tree.closest(raylanes.rays(origins, directions))
+    >>> hits = tree.closest(origins=origins, directions=directions)  # (..., 3) floats each, broadcast
     >>> hits.t, hits.u, hits.v, hits.primitive, hits.hit    # arrays, one element a ray
 
 A Bvh keeps the vertices that it is given: float64 and integers make a tree of float64, float32 one of float32, and

@@ -6,8 +6,8 @@ import numpy as np
 class Answer:
     """A new array, the caller's, or where that cannot be written in place one that is copied to it at the end.
 
-    dtype, shape: of the answers. read: arrays that the call reads. initial: what answers of elements hold that take no
-    part; None if all do. strided: whether rows may lie apart.
+    dtype, shape: of the answers. read: an array that the call reads, or a tuple of them. initial: what answers of
+    elements hold that take no part; None if all do. strided: whether rows may lie apart.
     """
 
     def __init__(self, out, shape, dtype, read, initial=None, strided=False):
@@ -28,7 +28,8 @@ class Answer:
         if overlaps_itself(out):
             raise ValueError(f"out: elements must not overlap, they do with the strides {out.strides}")
         fits = out.flags.c_contiguous or (strided and out.ndim == 1 and out.strides[0] >= out.itemsize)
-        in_place = fits and out.flags.aligned and not any(overlap(out, array) for array in read)
+        arrays = read if isinstance(read, tuple) else (read,)
+        in_place = fits and out.flags.aligned and not any(overlap(out, array) for array in arrays)
         self.array = out if in_place else out.copy()
         self.rows = self.array if out.ndim == 1 else self.array.reshape(-1)
 

@@ -1,6 +1,6 @@
 """Arrays as the library reads and writes them: their types, and how others become such."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -190,8 +190,42 @@ def narrowed(faces):
     raise ValueError(f"faces: vertices {low} to {high}, which 32 bits do not hold")
 
 
+class RayParts(NamedTuple):
+    """Origins, directions and ends as a caller gives them; shapes are broadcast."""
+    origins: Any
+    directions: Any
+    tmin: Any
+    tmax: Any
+
+    def checked(self):
+        """(parts, shape): arrays of real numbers, and the shape of the rays."""
+        parts = [numbers(name, part) for name, part in zip(self._fields, self)]
+        for name, part in zip(("origins", "directions"), parts):
+            if part.ndim == 0 or part.shape[-1] != 3:
+                raise ValueError(f"{name}: the last of its axes must have 3 numbers, its shape is {part.shape}")
+        shapes = [part.shape[:-1] for part in parts[:2]] + [part.shape for part in parts[2:]]
+        try:
+            return parts, np.broadcast_shapes(*shapes)
+        except ValueError:
+            raise ValueError("origins, directions, tmin, tmax: the shapes "
+                             f"{', '.join(str(part.shape) for part in parts)} cannot be broadcast") from None
+
+
+def given_rays(rays, origins, directions, tmin=None, tmax=None):
+    """The rays of a call: `rays`, or RayParts in their place."""
+    if rays is not None and origins is directions is tmin is tmax is None:
+        return rays
+    if rays is None and origins is not None and directions is not None:
+        return RayParts(origins, directions, 0.0 if tmin is None else tmin, np.inf if tmax is None else tmax)
+    all_of_them = {"rays": rays, "origins": origins, "directions": directions, "tmin": tmin, "tmax": tmax}
+    given = [name for name, value in all_of_them.items() if value is not None]
+    raise TypeError(f"rays: either rays alone or origins and directions are needed, not {', '.join(given) or None}")
+
+
 def rays(origins, directions, tmin=0.0, tmax=np.inf, dtype=None):
     """Make an array of rays. Shapes are broadcast.
+
+    Queries take origins and directions without this array: Bvh.closest(origins=..., directions=...).
 
     A ray is the segment of points origin + t * direction with tmin <= t <= tmax, both ends included. Directions need
     not be normalised: t is measured in their lengths. A ray hits nothing if its origin or direction is not finite, its
@@ -217,20 +251,19 @@ def rays(origins, directions, tmin=0.0, tmax=np.inf, dtype=None):
     >>> raylanes.rays([0, 0, 5], [[0, 0, -1], [0, 1, 0]], tmax=10)["tmax"]
     array([10., 10.])
     """
-    parts = numbers("origins", origins), numbers("directions", directions)
-    for name, part in zip(("origins", "directions"), parts):
-        if part.ndim == 0 or part.shape[-1] != 3:
-            raise ValueError(f"{name}: the last of its axes must have 3 numbers, its shape is {part.shape}")
-    ends = numbers("tmin", tmin), numbers("tmax", tmax)
-    shape = np.broadcast_shapes(*(part.shape[:-1] for part in parts), *(end.shape for end in ends))
-    made = np.empty(shape, numbers_for(dtype, *parts).ray)
-    made["origin"], made["direction"] = parts
-    made["tmin"], made["tmax"] = ends
+    parts, shape = RayParts(origins, directions, tmin, tmax).checked()
+    made = np.empty(shape, numbers_for(dtype, *parts[:2]).ray)
+    made["origin"], made["direction"], made["tmin"], made["tmax"] = parts
     return made
 
 
 def ray_rows(values, kind):
-    """(rows, shape): rays as records or in rows of eight numbers, no copy where type and layout allow."""
+    """(given, shape): rays as records or in rows of eight numbers, no copy where type and layout allow. RayParts
+    become a tuple of rows: origins, directions, tmin, tmax."""
+    if isinstance(values, RayParts):
+        parts, shape = values.checked()
+        return tuple(_spread(part, shape, part.shape[-1:] if i < 2 else (), kind.real)
+                     for i, part in enumerate(parts)), shape
     array = np.asarray(values)
     if array.dtype in (ray_dtype, double_ray_dtype):
         array = array.astype(kind.ray, copy=False)
@@ -248,6 +281,26 @@ def ray_rows(values, kind):
         raise ValueError("rays: records of raylanes.ray_dtype, or numbers in an axis of 6 (origin, direction) or 8 "
                          f"(origin, tmin, direction, tmax) are needed, the shape is {array.shape}")
     return rows("rays", array, 8, kind.real)
+
+
+def lines(values, kind):
+    """(origins, directions, shape): rows of three numbers each."""
+    given, shape = ray_rows(values, kind)
+    if isinstance(given, tuple):
+        return given[0], given[1], shape
+    if given.dtype.names:
+        return given["origin"], given["direction"], shape
+    return given[:, :3], given[:, 4:7], shape
+
+
+def _spread(part, shape, columns, real):
+    """A part for each ray of that shape: rows of `columns`, no copy where one step from row to row, 0 for a shared
+    part, says where they lie."""
+    part = part.astype(real, copy=False)
+    if columns and part.strides[-1] != part.itemsize:
+        part = np.ascontiguousarray(part)
+    flat = np.broadcast_to(part, shape + columns).reshape(count_of(shape), *columns)
+    return flat if flat.size == 0 or flat.strides[0] >= 0 else np.ascontiguousarray(flat)
 
 
 def unsigned(name, values):

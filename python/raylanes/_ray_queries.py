@@ -3,10 +3,10 @@
 import numpy as np
 
 from ._answer import Answer
-from ._arrays import count_dtype, packed, ray_rows
-from ._scalars import count, function, threads_of, word
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped
-from .hits import Crossings, Hits, Lists, Stretches
+from ._arrays import count_dtype, given_rays, packed, ray_rows
+from ._scalars import function, threads_of, word
+from ._traces import filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards, skipped
+from .hits import Crossings, Hits, Stretches
 from .paths import chosen
 
 
@@ -23,8 +23,9 @@ class RayQueries:
     def _filter(self, filter):
         return filter_of(filter, Hits, self._numbers.hit)
 
-    def closest(self, rays, *, filter=None, out=None, active=None, after=None, test="exact", grade="reproducible",
-                mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
+    def closest(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
+                active=None, after=None, test="exact", grade="reproducible", mode="automatic", hint="none",
+                facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -32,9 +33,13 @@ class RayQueries:
 
         Parameters
         ----------
-        rays : array
+        rays : array, optional
             Records, as rays() makes; or floats (..., 6): origin, direction; or floats (..., 8): origin,
             tmin, direction, tmax.
+        origins, directions : array of float, shape (..., 3), optional
+            Rays without records, in place of `rays`. Shapes are broadcast: a shared origin may have the shape (3,).
+        tmin, tmax : float or array of float, shape (...), optional
+            The ends of these rays, broadcast with them; 0 and inf by default.
         filter : function, optional
             filter(indices, hits) returns a bool for each hit: True rejects it, and its ray goes on behind it. indices
             are rows of the flattened rays, hits are Hits. It is called with batches of hits, on the calling thread.
@@ -73,22 +78,23 @@ class RayQueries:
         Raises
         ------
         TypeError, ValueError
-            If an array or option has a wrong type; if it has a wrong shape or value.
+            If an array or option has a wrong type, or both forms of rays are given; if it has a wrong shape or value.
 
         Examples
         --------
-        >>> hits = tree.closest(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -2]))
+        >>> hits = tree.closest(origins=[[0, 0, 5], [9, 0, 5]], directions=[0, 0, -2])
         >>> hits.hit, hits.t
         (array([ True, False]), array([2.5, inf], dtype=float32))
         >>> tree.closest(raylanes.rays([[0, 0, 5]], [0, 0, -2]), filter=lambda indices, hits: hits.t < 3).hit
         array([False])
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, hits_behind(after, answer), self._filter(filter)))
 
-    def closest_crossing(self, rays, *, out=None, active=None, after=None, mode="automatic", hint="none", facing="any",
-                         skip=None, threads=0, progress=None):
+    def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, out=None, active=None,
+                         after=None, mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit at which each ray passes through the surface.
 
         An edge between two triangles counts once, or not at all where the ray only touches it. So rays enter and leave
@@ -97,7 +103,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, out, active, mode, hint, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, out, active, mode, hint, facing, skip, threads, progress
             As in closest(), by the test "exact".
         after : Hits, optional
             For each ray a hit: the result is the next passage behind it, in the order of t, then of primitives.
@@ -114,17 +120,19 @@ class RayQueries:
         >>> entered.t, tree.closest_crossing(rays, skip=entered).hit
         (array([2.5, inf], dtype=float32), array([False, False]))
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how("exact", "reproducible", mode, hint, facing, threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
             given, answer.rows, asked, bits, hits_behind(after, answer)))
 
-    def occluded(self, rays, *, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                 mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
+    def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
+                 active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",
+                 skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, filter, out, test, grade, mode, hint, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, filter, out, test, grade, mode, hint, facing, skip, threads, progress
             As in closest().
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -139,6 +147,7 @@ class RayQueries:
         >>> tree.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
         return shadows(self._numbers, rays, out, active,
                        lambda given, answers, bits: self._tree.occluded(
@@ -217,12 +226,13 @@ class RayQueries:
                                lambda *given: self._tree.occluded_from(
                                    *given[:-1], asked, given[-1], self._filter(filter)))
 
-    def all_hits(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
+    def all_hits(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, facing="any",
+                 skip=None, active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.
 
         Parameters
         ----------
-        rays : array
+        rays, origins, directions, tmin, tmax
             As in closest(), in one dimension.
         max_count : int, optional
             Keep the first so many hits of each ray.
@@ -246,10 +256,12 @@ class RayQueries:
         >>> lists[0].t
         array([2.5], dtype=float32)
         """
-        return _lists(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
                       threads, progress, skip)
 
-    def crossings(self, rays, *, max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
+    def crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, facing="any",
+                  skip=None, active=None, threads=0, progress=None):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
 
         Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
@@ -257,7 +269,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, max_count, skip, active, threads, progress
+        rays, origins, directions, tmin, tmax, max_count, skip, active, threads, progress
             As in all_hits().
         facing : {"any", "front", "back"}, default "any"
             Keep crossings of these sides only: of the front, side is -1; of the back, 1.
@@ -272,10 +284,12 @@ class RayQueries:
         >>> tree.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0].side
         array([-1], dtype=int32)
         """
-        return _lists(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
                       active, threads, progress, skip)
 
-    def stretches(self, rays, *, max_count=None, skip=None, active=None, threads=0, progress=None):
+    def stretches(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, skip=None,
+                  active=None, threads=0, progress=None):
         """Find where each ray runs within solids: each entry with its exit, and the winding number between them.
 
         Lengths are right for rays through edges and corners, too: the sum of (exit - entry) * winding is that of exact
@@ -285,7 +299,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, max_count, skip, active, threads, progress
+        rays, origins, directions, tmin, tmax, max_count, skip, active, threads, progress
             As in all_hits().
 
         Returns
@@ -301,15 +315,17 @@ class RayQueries:
         >>> within.entry, within.exit
         (array([7.]), array([9.]))
         """
-        return _lists(self._tree.stretches, Stretches, self._numbers, self._numbers.stretch, rays, max_count, "any",
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.stretches, Stretches, self._numbers, self._numbers.stretch, rays, max_count, "any",
                       active, threads, progress, skip)
 
-    def count_crossings(self, rays, *, facing="any", skip=None, out=None, active=None, threads=0, progress=None):
+    def count_crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, facing="any",
+                        skip=None, out=None, active=None, threads=0, progress=None):
         """Count the crossings of each ray, and add up their sides.
 
         Parameters
         ----------
-        rays, out, skip, threads, progress
+        rays, origins, directions, tmin, tmax, out, skip, threads, progress
             As in closest(), by the test "exact".
         facing : {"any", "front", "back"}, default "any"
             Count crossings of these sides only, as in crossings().
@@ -326,18 +342,9 @@ class RayQueries:
         >>> tree.count_crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))["winding"]
         array([-1], dtype=int32)
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         given, shape = ray_rows(rays, self._numbers)
-        answer = Answer(out, shape, count_dtype, (given,), None if active is None else np.zeros((), count_dtype))
+        answer = Answer(out, shape, count_dtype, given, None if active is None else np.zeros((), count_dtype))
         self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
                                    packed(active, shape), function("progress", progress), skipped(skip))
         return answer.finish()
-
-
-def _lists(query, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip):
-    given, shape = ray_rows(rays, numbers)
-    if len(shape) != 1:
-        raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
-    limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
-    offsets, items = query(given, limit, word("facing", facing), chosen(), threads_of(threads),
-                           packed(active, shape), function("progress", progress), skipped(skip))
-    return Lists(offsets.view(np.int64), items.view(dtype).view(kind))

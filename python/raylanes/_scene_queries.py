@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._arrays import SCENES, unsigned
+from ._arrays import SCENES, given_rays, unsigned
 from ._scalars import count
 from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped_in_scene
 from .scene_hits import SceneHits
@@ -14,16 +14,16 @@ _instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", 
 class SceneQueries:
     """Queries of rays and of instances over the native scene `self._tree`."""
 
-    def closest(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, after=None, test="exact",
-                grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
-                progress=None):
+    def closest(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
+                out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic", hint="none",
+                facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest instance, then to the lowest primitive.
 
         Parameters
         ----------
-        rays : array
+        rays, origins, directions, tmin, tmax
             As in Bvh.closest().
         mask : int, default 2^32 - 1
             Only instances whose mask has a bit in common with this are hit.
@@ -71,13 +71,14 @@ class SceneQueries:
         >>> scene.closest(rays, after=scene.closest(rays)).hit
         array([False])
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer), filter_of(filter, SceneHits)))
 
-    def closest_crossing(self, rays, *, mask=EVERY_BIT, after=None, out=None, active=None, facing="any", skip=None,
-                         threads=0, progress=None):
+    def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
+                         after=None, out=None, active=None, facing="any", skip=None, threads=0, progress=None):
         """Find the nearest hit at which each ray passes through the surface of an instance.
 
         As Bvh.closest_crossing() in the space of each instance: an edge counts once, or not at all where the ray only
@@ -85,7 +86,7 @@ class SceneQueries:
 
         Parameters
         ----------
-        rays, mask, active, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, mask, active, facing, skip, threads, progress
             As in closest().
         after : SceneHits, optional
             For each ray a hit: the result is the next passage behind it.
@@ -108,18 +109,21 @@ class SceneQueries:
         >>> scene.closest_crossing(rays, facing="front").hit, scene.closest_crossing(rays, facing="back").hit
         (array([ True]), array([False]))
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
             given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
 
-    def occluded(self, rays, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact", grade="reproducible",
-                 mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
+    def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
+                 out=None, active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",
+                 skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, mask, filter, out, test, grade, mode, hint, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, mask, filter, out, test, grade, mode, hint, facing, skip, threads,
+        progress
             As in closest().
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -134,6 +138,7 @@ class SceneQueries:
         >>> scene.occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[4, 5]))
         array([False,  True])
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(

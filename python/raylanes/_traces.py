@@ -4,7 +4,8 @@ import numpy as np
 
 from ._answer import Answer, overlap
 from ._arrays import packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
-from ._scalars import function, real, threads_of, word
+from ._scalars import count, function, real, threads_of, word
+from .hits import Lists
 from .paths import chosen
 
 
@@ -12,7 +13,7 @@ def nearest(numbers, kind, rays, out, active, ask):
     """Hits of the class `kind`. ask(rows of rays, Answer, bits of active rays) writes them, also apart."""
     given, shape = ray_rows(rays, numbers)
     initial = None if active is None else np.array(kind._miss, numbers.hit)
-    answer = Answer(out, shape, numbers.hit, (given,), initial, strided=True)
+    answer = Answer(out, shape, numbers.hit, given, initial, strided=True)
     ask(given, answer, packed(active, shape))
     return answer.finish(kind)
 
@@ -20,9 +21,20 @@ def nearest(numbers, kind, rays, out, active, ask):
 def shadows(numbers, rays, out, active, ask):
     """Whether rays hit anything. ask(rows of rays, bytes to write, bits of active rays) writes the answers."""
     given, shape = ray_rows(rays, numbers)
-    answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
+    answer = Answer(out, shape, np.dtype(bool), given, None if active is None else False)
     ask(given, answer.rows.view(np.uint8), packed(active, shape))
     return answer.finish()
+
+
+def listed(ask, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip):
+    """Lists of items of the class `kind`, records of `dtype`, which ask() returns as bytes."""
+    given, shape = ray_rows(rays, numbers)
+    if len(shape) != 1:
+        raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
+    limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
+    offsets, items = ask(given, limit, word("facing", facing), chosen(), threads_of(threads), packed(active, shape),
+                         function("progress", progress), skipped(skip))
+    return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
 
 
 def shadows_from(numbers, origin, points, ends, out, active, ask):

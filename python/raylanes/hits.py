@@ -4,7 +4,7 @@ from types import GenericAlias
 
 import numpy as np
 
-from ._arrays import DOUBLES, FLOATS, faces_of, no_primitive, numbers, ray_rows, vertices_of
+from ._arrays import DOUBLES, FLOATS, faces_of, given_rays, lines, no_primitive, numbers, vertices_of
 from ._meshes import faces_in, parts_of
 
 
@@ -131,7 +131,7 @@ class _OnTriangle:
 class _OnRay:
     """Records with a place on a ray: t says where."""
 
-    def positions(self, rays):
+    def positions(self, rays=None, *, origins=None, directions=None):
         """Compute origin + t * direction of each hit or crossing.
 
         Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
@@ -139,8 +139,10 @@ class _OnRay:
 
         Parameters
         ----------
-        rays : array
+        rays : array, optional
             The rays of the query, in the same shape.
+        origins, directions : array of float, shape (..., 3), optional
+            The origins and directions of the query, in place of `rays`. Shapes are broadcast.
 
         Returns
         -------
@@ -152,11 +154,10 @@ class _OnRay:
         ValueError
             If the rays have another shape.
         """
-        rows, shape = ray_rows(rays, _numbers_of(self.t))
+        origins, directions, shape = lines(given_rays(rays, origins, directions), _numbers_of(self.t))
         if shape != np.shape(self.t):
             raise ValueError(f"rays: the shape must be {np.shape(self.t)}, it is {shape}")
-        parts = (rows["origin"], rows["direction"]) if rows.dtype.names else (rows[:, :3], rows[:, 4:7])
-        origins, directions = (part.reshape(shape + (3,)).astype(np.float64) for part in parts)
+        origins, directions = (part.reshape(shape + (3,)) for part in (origins, directions))
         with np.errstate(invalid="ignore", over="ignore"):
             positions = origins + np.asarray(self.t, np.float64)[..., None] * directions
             return np.where(_there_is(self.primitive)[..., None], positions, np.nan).astype(self.t.dtype)
@@ -286,7 +287,7 @@ class Lists:
         """ndarray of int64, shape (h,): the ray of each item."""
         return np.repeat(np.arange(len(self)), self.counts)
 
-    def positions(self, rays):
+    def positions(self, rays=None, *, origins=None, directions=None):
         """Compute origin + t * direction of each hit or crossing.
 
         Computed in double: off along the ray by the rounding of t, |t * direction| * 2^-24 for t of float32 and 2^-52
@@ -294,8 +295,10 @@ class Lists:
 
         Parameters
         ----------
-        rays : array
+        rays : array, optional
             The rays of the query, shape (n,).
+        origins, directions : array of float, shape (..., 3), optional
+            The origins and directions of the query, in place of `rays`. Shapes are broadcast.
 
         Returns
         -------
@@ -307,10 +310,10 @@ class Lists:
         ValueError
             If the rays have another number.
         """
-        rows, shape = ray_rows(rays, _numbers_of(self.items.t))
+        origins, directions, shape = lines(given_rays(rays, origins, directions), _numbers_of(self.items.t))
         if shape != (len(self),):
             raise ValueError(f"rays: the shape must be {(len(self),)}, it is {shape}")
-        return self.items.positions(rows[self.ray])
+        return self.items.positions(origins=origins[self.ray], directions=directions[self.ray])
 
     def __repr__(self):
         return f"<raylanes.Lists of {len(self.items)} items of {len(self)} rays>"

@@ -59,7 +59,7 @@ class _SceneHitNumbers(HitNumbers):
             made = np.full((len(hits), *np.shape(first)[1:]), np.nan)
         return made.reshape(np.shape(self) + made.shape[1:])
 
-    def normals(self, scene, parts, rays=None):
+    def normals(self, scene, parts, rays=None, *, origins=None, directions=None):
         """Compute the unit normals of the surfaces in the space of the scene, in double.
 
         They are the normals of the parts times the inverse transposed transforms: the normals of a solid that point
@@ -73,6 +73,8 @@ class _SceneHitNumbers(HitNumbers):
             parts[g] is the tree of geometry g, or its mesh, a pair (vertices, faces), or its SphereTree.
         rays : array, optional
             The rays of the query, in the same shape. Hits on spheres need them.
+        origins, directions : array of float, shape (..., 3), optional
+            The origins and directions of the query, in place of `rays`. Shapes are broadcast.
 
         Returns
         -------
@@ -99,7 +101,9 @@ class _SceneHitNumbers(HitNumbers):
             raise TypeError(f"scene: a Scene is needed, not {type(scene).__name__}")
         hits = _rows_of(self)
         normals = np.full((len(hits), 3), np.nan)
-        positions = None if rays is None else np.reshape(self.positions(rays), (-1, 3)).astype(np.float64)
+        positions = None
+        if rays is not None or origins is not None or directions is not None:
+            positions = self.positions(rays, origins=origins, directions=directions).reshape(-1, 3).astype(np.float64)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             for geometry, of_geometry in _geometries_in(hits):
                 transforms = scene.transform_of(hits["instance"][of_geometry]).astype(np.float64)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import _native
-from ._arrays import DOUBLES, FLOATS, numbers, numbers_for, require_kept, vertices_of
+from ._arrays import DOUBLES, FLOATS, given_rays, numbers, numbers_for, require_kept, vertices_of
 from ._scalars import threads_of, word
 from ._stored import Copied
 from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped
@@ -101,7 +101,8 @@ class SphereTree(Copied):
         return {"builder": self._tree.builder(), "spheres": len(self), "left_out": self._tree.left_out(),
                 "bytes": self.nbytes}
 
-    def closest(self, rays, *, filter=None, out=None, active=None, after=None, skip=None, threads=0, progress=None):
+    def closest(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
+                active=None, after=None, skip=None, threads=0, progress=None):
         """Find the nearest surface that each ray meets.
 
         A ray that begins inside a sphere hits it where it leaves. A sphere has two hits, where a ray enters and leaves
@@ -110,7 +111,7 @@ class SphereTree(Copied):
 
         Parameters
         ----------
-        rays, filter, after, progress
+        rays, origins, directions, tmin, tmax, filter, after, progress
             As in Bvh.closest().
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result.
@@ -135,16 +136,18 @@ class SphereTree(Copied):
         >>> spheres.closest(raylanes.rays([[0, 0, 1]], [0, 0, -1]), skip=[0]).t  # from a sphere inwards
         array([2.], dtype=float32)
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = _asked(threads, progress, skip)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, hits_behind(after, answer), filter_of(filter, Hits, FLOATS.hit)))
 
-    def occluded(self, rays, *, filter=None, out=None, active=None, skip=None, threads=0, progress=None):
+    def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
+                 active=None, skip=None, threads=0, progress=None):
         """Find out whether the segment of each ray meets the surface of a sphere.
 
         Parameters
         ----------
-        rays, filter, out, skip, threads, progress
+        rays, origins, directions, tmin, tmax, filter, out, skip, threads, progress
             As in closest().
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -160,6 +163,7 @@ class SphereTree(Copied):
         >>> raylanes.SphereTree([[0, 0, 0]], 1).occluded(raylanes.rays([0, 0, 5], [0, 0, -1], tmax=[3, 5]))
         array([False,  True])
         """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = _asked(threads, progress, skip)
         return shadows(FLOATS, rays, out, active, lambda given, answers, bits: self._tree.occluded(
             given, answers, asked, bits, filter_of(filter, Hits, FLOATS.hit)))

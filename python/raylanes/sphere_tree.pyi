@@ -4,7 +4,7 @@ from typing import Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import Hits, _Bools, _Copied, _Filter, _Mask, _Progress, _Skip, _TreeBuilder
+from . import Hits, _Bools, _Copied, _Filter, _Mask, _Progress, _Rays, _Skip, _TreeBuilder
 
 _SphereReport = TypedDict("_SphereReport", {"builder": _TreeBuilder, "spheres": int, "left_out": int, "bytes": int})
 
@@ -21,9 +21,11 @@ class SphereTree(_Copied):
     @property
     def nbytes(self) -> int: ...
     def report(self) -> _SphereReport: ...
-    def closest(self, rays: ArrayLike, *, filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
+    def closest(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                tmax: _Rays = ..., filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
                 after: Any = ..., skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> Hits: ...
-    def occluded(self, rays: ArrayLike, *, filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
+    def occluded(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                 tmax: _Rays = ..., filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ...,
                  skip: _Skip = ..., threads: int = ..., progress: _Progress = ...) -> _Bools: ...
     def occluded_from(self, origin: ArrayLike, points: ArrayLike, *, start: float = ..., end: float = ...,
                       filter: _Filter[Hits] | None = ..., out: Any = ..., active: _Mask = ..., skip: _Skip = ...,

@@ -30,6 +30,7 @@ crossings: raylanes.Lists[raylanes.Crossings] = tree.crossings([])
 print(crossings[0].side.shape, crossings.items.side.shape, tree.stretches([]).items.winding.shape)
 doubles = raylanes.Bvh([], [], dtype=np.float64)
 print(doubles.dtype == np.float64, doubles.report()["rounded_away"], raylanes.rays([], [], dtype=np.float32).dtype)
+print(tree.closest(origins=[0, 0, 1], directions=[[0, 0, 1]], tmax=2).positions(origins=[0, 0, 1], directions=[]).shape)
 print(raylanes.KdTree([], [], dtype=np.float32).dtype, doubles.closest([]).t.dtype)
 scene, spheres = raylanes.Scene(), raylanes.SphereTree([], 1, builder="morton")
 places = scene.place(scene.add(spheres), np.eye(4), mask=[1, 2])
@@ -44,6 +45,8 @@ print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).int
 bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "dtype",
        "raylanes.KdTree([], [], dtype=float)": "dtype", "raylanes.Bvh([], [], builder='sah')": "builder",
        "raylanes.Bvh([], []).locate([], rule='odd')": "rule",
+       "raylanes.Bvh([], []).closest(origins=[], direction=[])": "direction",
+       "raylanes.Bvh([], []).closest([], [])": "positional",
        "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes",
        "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",
        "raylanes.Scene().add(raylanes.KdTree([], []))": "KdTree",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._arrays import rays as _made_of
+from .._arrays import RayParts
 from .._point_queries import OUTSIDE
 from .of_mesh import OfMesh, table
 
@@ -77,7 +77,7 @@ def _rays(ray_origins, ray_directions):
     origins, directions = table("ray_origins", ray_origins), table("ray_directions", ray_directions)
     if len(origins) != len(directions):
         raise ValueError(f"{len(origins)} ray_origins and {len(directions)} ray_directions")
-    return _made_of(origins, near_unit(directions))
+    return RayParts(origins, near_unit(directions), 0.0, np.inf)
 
 
 def near_unit(directions):

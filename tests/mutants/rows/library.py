@@ -144,7 +144,7 @@ MUTANTS = [
         ('native: builders keep the GIL', 'listener.without_gil([&]',
          '[](auto work) { return work(); }([&]'), source='python/native/tree_classes.cpp'),
     *rows_of('python/raylanes/_answer.py', 'python_arrays',
-        ('python: overlap not looked at', 'not any(overlap(out, array) for array in read)', 'True')),
+        ('python: overlap not looked at', 'not any(overlap(out, array) for array in arrays)', 'True')),
     *rows_of('python/raylanes/_answer.py', 'python_out',
         ('python: elements of out that overlap', 'if step < reach:', 'if step < 0:')),
     *rows_of('python/raylanes/_arrays.py', 'python_arrays',

@@ -89,6 +89,7 @@ def queries_of(tree):
     yield "closest(filter)", lambda: tree.closest(rays, filter=even, threads=1).tobytes()
     yield "occluded_from(filter)", lambda: tree.occluded_from(points[0], points, filter=even, threads=1).tobytes()
     yield "closest(skip)", lambda: tree.closest(rays, skip=first, active=active, threads=1).tobytes()
+    yield "closest(origins)", lambda: tree.closest(origins=[0, 0, 2], directions=points, tmax=numbers[0]).tobytes()
     yield "occluded_from", lambda: tree.occluded_from(points[0], points, threads=1).tobytes()
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
