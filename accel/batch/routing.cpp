@@ -178,6 +178,9 @@ bool do_rays_wait(double shared_visits, std::size_t bytes) {
   constexpr std::size_t second_cache = std::size_t{1} << 23;  // and a part of the third
   return bytes > second_cache && !are_mostly_shared(shared_visits);
 }
+bool has_flights(const Path& path) {
+  return path.required.contains({CpuFeature::avx2, CpuFeature::fma});
+}
 
 template <class Sink>
 void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,

@@ -28,6 +28,8 @@ struct TraversalChoice {
 StreamSizes streams_from(double shared_visits);
 // Whether single rays of a batch mostly wait for the memory of such a tree.
 bool do_rays_wait(double shared_visits, std::size_t bytes);
+// Whether the rows of single rays of the exact test have code for some rays at a time on a path.
+bool has_flights(const Path& path);
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
 // Sinks are HitSink<Hit> and SpanSink<std::uint8_t>.

@@ -33,7 +33,9 @@ struct BvhDArrays : NodesOfMesh {
         mesh_bounds(other.mesh_bounds) {}
 
   DoubleTreeView view() const {
-    return {{nodes.data(), nullptr, live_root(), bounds}, halves.data(), frame, mesh_bounds};
+    DoubleTreeView view{{nodes.data(), nullptr, live_root(), bounds}, halves.data(), frame, mesh_bounds};
+    view.tree.rays_wait = rays_wait;
+    return view;
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }
 };

@@ -20,6 +20,8 @@ struct NodesOfMesh {
   TreeReference root = empty_reference;
   Box bounds = empty_box;  // around the nodes
 
+  bool rays_wait = false;  // as in TreeView
+
   // For trees that follow a mesh in motion.
   std::size_t mesh_triangles = 0;
   std::vector<std::uint32_t> left_out;  // triangles without a leaf, which nothing hit when the tree was built
@@ -51,7 +53,6 @@ void each_leaf_reference(Tree& tree, const Visit& visit) {
 // The arrays behind a TreeView of a mesh.
 struct BvhArrays : TreeLeaves, NodesOfMesh {
   StreamSizes streams_from;
-  bool rays_wait = false;
 
   TreeView view() const {
     TreeView view{nodes.data(), corners.blocks(), live_root(), bounds};

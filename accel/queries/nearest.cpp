@@ -69,8 +69,7 @@ class RowsOfOptions {
 void set_what_tells(TraversalChoice& choice, const TraceOptions& options) {
   const Path& path = checked_path(options.path);
   choice.nearest_triangle = kernels_of(path).traversal.nearest_triangle;
-  choice.may_fly =
-      options.test == TriangleTest::exact && path.required.contains({CpuFeature::avx2, CpuFeature::fma});
+  choice.may_fly = options.test == TriangleTest::exact && has_flights(path);
 }
 
 TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options, std::size_t test,

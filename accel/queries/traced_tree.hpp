@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raylanes/bvh.hpp>
+#include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/routing.hpp"
@@ -20,11 +21,13 @@ struct TracedTree {
   bool has_parts = false;  // whether a triangle can be in several leaves
 };
 struct BvhArrays;
+struct BvhDArrays;
 
-// The inside of a Bvh.
+// The inside of a Bvh or a BvhD.
 struct TreeOf {
   static TracedTree bvh(const Bvh& bvh);
   static const BvhArrays* arrays(const Bvh& bvh) { return bvh.tree_.get(); }  // null: of an empty mesh
+  static const BvhDArrays* arrays(const BvhD& bvh) { return bvh.tree_.get(); }
   static const TreeView* ready(
       const Bvh& bvh);  // what calls with one ray walk, until a refit; not of an empty mesh
   static Bvh copy(const Bvh& bvh);

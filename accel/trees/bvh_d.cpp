@@ -3,6 +3,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../batch/routing.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../doubles/bvh_d_arrays.hpp"
 #include "../layout/cost.hpp"
@@ -52,6 +53,8 @@ BvhD& BvhD::operator=(BvhD&&) noexcept = default;
 BvhD::BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& options)
     : BvhD(std::make_unique<BvhDArrays>(build_bvh_d(vertices, triangles, options))) {}
 BvhD::BvhD(std::unique_ptr<BvhDArrays> tree) noexcept : tree_(std::move(tree)) {
+  const QuietFloats quiet;
+  tree_->rays_wait = do_rays_wait(shared_visits(*tree_), tree_->bytes());
   tree_->ready = tree_->view();
 }
 

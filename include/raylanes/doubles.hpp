@@ -276,6 +276,7 @@ class BvhD {
   TreeReport report() const;
 
  private:
+  friend struct TreeOf;
   explicit BvhD(std::unique_ptr<struct BvhDArrays> tree) noexcept;
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                         const TraceOptionsD& options) const;

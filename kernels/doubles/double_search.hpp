@@ -171,24 +171,6 @@ template <class Rule>
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
-// The same by what a batch asks of ray i.
-inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBatch& batch, std::size_t i) {
-  const RayD& ray = batch.rays[i];
-  if (takes_all(batch) && batch.after == nullptr) return nearest_triangle(tree, ray, ray.tmin, BothSides());
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr HitD before_any{-infinity, 0.0, 0.0, 0, 0};
-  const HitD& last = batch.after != nullptr ? batch.after[i] : before_any;
-  if (!(last.t < infinity)) return no_leaf_triangle;  // a miss, or NaN
-  return nearest_triangle(tree, ray, last.t > ray.tmin ? last.t : ray.tmin,
-                          HitsBehind<HitD>{last, batch.facing, skipped_by(batch, i)});
-}
-
-[[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const DoubleTriangles triangles(tree);
-  const auto nearest = [&](std::size_t i) { return nearest_triangle(tree, batch, i); };
-  hits_of_some<1>(triangles, batch, hits_of_some<double_lanes>(triangles, batch, 0, nearest), nearest);
-}
-
 // A ray in a call of its own.
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return nearest_triangle(tree, ray, ray.tmin, BothSides());
@@ -207,14 +189,6 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const DoubleBa
 }
 [[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return hits_any(tree, ray);
-}
-[[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  ChosenHits sides;
-  sides.facing = batch.facing;
-  for (std::size_t i = 0; i < batch.size; ++i) {
-    sides.skipped = skipped_by(batch, i);
-    batch.occluded[i] = hits_any(tree, batch.rays[i], sides) ? 1 : 0;
-  }
 }
 
 }  // namespace

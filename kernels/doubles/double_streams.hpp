@@ -3,6 +3,7 @@
 
 #include "../exact/leaf_filter.hpp"
 #include "../traverse/streams.hpp"
+#include "doubles_one_by_one.hpp"
 #include "doubles_together.hpp"
 
 namespace raylanes {

@@ -237,7 +237,8 @@ struct SingleRows {
 };
 
 // Out of line: what is rare makes no code longer.
-[[gnu::noinline]] inline TraceBatch part_of(const TraceBatch& batch, std::size_t first, std::size_t size) {
+template <class T>
+[[gnu::noinline]] TraceBatchOf<T> part_of(const TraceBatchOf<T>& batch, std::size_t first, std::size_t size) {
   return batch.part(first, size);
 }
 

@@ -6,6 +6,7 @@
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
+#include "../traverse/reference/in_flight.hpp"
 #include "double_cases.hpp"
 
 namespace raylanes::testing {
@@ -63,10 +64,17 @@ void on_each_case(const Check& check, bool in_turn = false) {
       check(known_cases()[i], *paths[p]);
     }
 }
-// Thousands of rays: below level all each case on one path, all paths in turn.
+// Thousands of rays, together and in flight: below level all each case on one path, all paths in turn.
 template <class Check>
 void on_large_cases(const Check& check) {
-  on_each_case(check, by_level(true, true, false));
+  on_each_case(
+      [&](const Known& known, const Path& path) {
+        check(known, path);
+        let_rays_fly(known.tree);
+        check(known, path);
+        let_rays_fly(known.tree, false);
+      },
+      by_level(true, true, false));
 }
 
 TEST(DoubleRays, nearest_hits_are_those_of_rational_arithmetic) {

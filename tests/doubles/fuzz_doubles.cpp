@@ -10,6 +10,7 @@
 #include "../fuzz/support.hpp"
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
+#include "../traverse/reference/in_flight.hpp"
 #include "summed_windings.hpp"
 
 namespace raylanes::testing {
@@ -216,8 +217,10 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   }
   expect_hits(tree, rays, hits, {.path = path, .facing = facing, .skip = skip});
   expect_passages(tree, mesh, rays, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
+  const bool flies = bytes.chance(48);
+  if (flies) let_rays_fly(tree);
   const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
-  if (!skips && !rays.empty() && (streams || share_origin))
+  if (!skips && !rays.empty() && (streams || share_origin || flies))
     expect_hits_of_many(tree, rays, streams ? 4100 : 80, hits, {.path = path, .facing = facing});
   const RayLists<CrossingD> lists = tree.crossings(rays, {.path = path});
   for (std::size_t i = 0; i < rays.size(); ++i) {

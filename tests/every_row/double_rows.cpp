@@ -35,7 +35,7 @@ std::vector<RayD> some_double_rays() {
   return rays;
 }
 
-enum class Rays { single, stream, packet };
+enum class Rays { single, in_flight, stream, packet };
 
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
 void trace(const DoubleRayKernels& kernels, const BvhDArrays& tree, DoubleBatch batch, Rays as, Kernel single,
@@ -45,7 +45,9 @@ void trace(const DoubleRayKernels& kernels, const BvhDArrays& tree, DoubleBatch 
   Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
   batch.scratch = scratch.take<std::byte>(bytes);
   if (as == Rays::packet && batch.size == 0) return;
-  (as == Rays::single ? single : as == Rays::stream ? stream : kernels.packet)(tree.view(), batch);
+  DoubleTreeView view = tree.view();
+  view.tree.rays_wait = as == Rays::in_flight;
+  (as == Rays::packet ? kernels.packet : as == Rays::stream ? stream : single)(view, batch);
 }
 std::vector<HitD> hits_of(const DoubleRayKernels& kernels, const BvhDArrays& tree,
                           const std::vector<RayD>& rays, Facing facing, const HitD* after,
@@ -98,7 +100,7 @@ void compare_skips(const DoubleRayKernels& mine, const DoubleRayKernels& of_scal
   const std::vector<HitD> hits = hits_of(of_scalar, tree, rays, facing, nullptr, Rays::single, skip.data());
   const std::vector<std::uint8_t> occluded =
       occluded_by(of_scalar, tree, rays, facing, Rays::single, skip.data());
-  for (const Rays as : {Rays::single, Rays::stream}) {
+  for (const Rays as : {Rays::single, Rays::in_flight, Rays::stream}) {
     EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, nullptr, as, skip.data()), hits));
     EXPECT_EQ(occluded_by(mine, tree, rays, facing, as, skip.data()), occluded);
   }
@@ -154,7 +156,10 @@ TEST_P(EveryRow, of_doubles) {
       EXPECT_TRUE(same_bytes(first, hits_of(of_scalar, tree, rays, facing, nullptr)));
       EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, first.data()),
                              hits_of(of_scalar, tree, rays, facing, first.data())));
-      EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, Rays::stream)));
+      EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, facing, first.data(), Rays::in_flight),
+                             hits_of(of_scalar, tree, rays, facing, first.data())));
+      for (const Rays as : {Rays::in_flight, Rays::stream})
+        EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, as)));
       compare_skips(mine, of_scalar, tree, rays, facing, first);
       const std::vector<std::uint8_t> occluded = occluded_by(mine, tree, rays, facing);
       for (std::size_t i = 0; facing == Facing::any && i < n; ++i) {
@@ -166,7 +171,8 @@ TEST_P(EveryRow, of_doubles) {
         EXPECT_EQ(triangle == ~0u ? no_primitive : triangles.primitive(triangle), first[i].primitive);
       }
       EXPECT_EQ(occluded, occluded_by(of_scalar, tree, rays, facing));
-      EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, Rays::stream));
+      for (const Rays as : {Rays::in_flight, Rays::stream})
+        EXPECT_EQ(occluded, occluded_by(mine, tree, rays, facing, as));
       const auto hits = list_of<HitD>(mine, tree, rays, ListKind::hits, ListStop::never, facing);
       EXPECT_TRUE(
           same_bytes(hits, list_of<HitD>(of_scalar, tree, rays, ListKind::hits, ListStop::never, facing)));
@@ -195,6 +201,31 @@ TEST_P(EveryRow, of_doubles) {
   }
   compare_closest_points(*this, mine, of_scalar, tree);
   expect_all_called(mine);
+}
+
+// As Calls.in_flight_keep_what_waits_in_deep_trees of floats: triangles around an axis, each thinner than the last and
+// longer, so that a ray along the axis has many boxes waiting.
+TEST_P(EveryRow, of_doubles_in_flight_keep_what_waits) {
+  const DoubleRayKernels &mine = kernels_of(path()).doubles, &of_scalar = kernels_of(scalar()).doubles;
+  if (!offers(mine.closest, of_scalar.closest) || !offers(mine.any, of_scalar.any)) return;
+  std::vector<Double3> vertices;
+  std::vector<Index3> triangles;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const double s = std::pow(0.98, i);
+    vertices.insert(vertices.end(), {{s, -s, -0.001 * i}, {-s, s, -0.001 * i}, {-0.9 * s, -0.9 * s, 1}});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const BvhDArrays tree = build_bvh_d(vertices, triangles, {.builder = TreeBuilder::sweep_sah});
+  Source random(85);
+  std::vector<RayD> rays;
+  for (int i = 0; i < 300; ++i) {
+    const double s = std::pow(10, i % 4 == 0 ? random.number(-35, 0) : random.number(-7, -5));
+    rays.push_back({{random.number(-1, 1) * s, random.number(-1, 1) * s, -10}, 0, {0, 0, 1}, 100});
+  }
+  EXPECT_TRUE(same_bytes(hits_of(mine, tree, rays, Facing::any, nullptr, Rays::in_flight),
+                         hits_of(of_scalar, tree, rays, Facing::any, nullptr)));
+  EXPECT_EQ(occluded_by(mine, tree, rays, Facing::any, Rays::in_flight),
+            occluded_by(of_scalar, tree, rays, Facing::any));
 }
 
 }  // namespace
