@@ -115,10 +115,12 @@ class Leaves {
 
 // The place of a primitive among places(), or null. Finds it at once where each primitive has one.
 inline const std::uint64_t* place_of(std::span<const std::uint64_t> places, std::uint32_t primitive) {
-  const std::uint64_t* place = places.data() + primitive;
-  if (primitive >= places.size() || *place >> 32 != primitive)
-    place = std::to_address(std::ranges::lower_bound(places, std::uint64_t{primitive} << 32));
-  return place != places.data() + places.size() && *place >> 32 == primitive ? place : nullptr;
+  const auto has = [&](std::size_t i) { return i < places.size() && places[i] >> 32 == primitive; };
+  std::size_t i = primitive;
+  if (!has(i))
+    i = static_cast<std::size_t>(std::ranges::lower_bound(places, std::uint64_t{primitive} << 32) -
+                                 places.begin());
+  return has(i) ? &places[i] : nullptr;
 }
 
 // A node without children.

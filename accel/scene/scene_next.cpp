@@ -27,14 +27,6 @@ auto filtered(const SceneParts& scene, const SceneHitFilter& filter, const Trace
                                                                                       options, trace};
 }
 
-void require_triangles(const Scene& scene, const TraceOptions& options) {
-  require_exact_in_scene(options);
-  for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
-    if (scene.tree(i) == nullptr)
-      throw std::invalid_argument("scene: passages are of triangles alone, geometry " + std::to_string(i) +
-                                  " has other primitives");
-}
-
 // Says of a hit that may touch an edge whether the ray passes through its instance there.
 bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
                 const std::optional<SkippedPrimitive>& skip, const TraceOptions& options) {
@@ -98,6 +90,14 @@ void require_after_in_scene(const TraceOptions& options, std::size_t rays) {
   if (options.after.to_instance == 0)
     throw std::invalid_argument(
         "scene: after takes hits in scenes, which name an instance besides the primitive");
+}
+
+void require_triangles(const Scene& scene, const TraceOptions& options) {
+  require_exact_in_scene(options);
+  for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
+    if (scene.tree(i) == nullptr)
+      throw std::invalid_argument("scene: passages are of triangles alone, geometry " + std::to_string(i) +
+                                  " has other primitives");
 }
 
 SceneHit Scene::closest_crossing(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {

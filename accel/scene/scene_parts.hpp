@@ -97,5 +97,7 @@ void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitVi
 // Throws std::invalid_argument if options.after is not of so many hits in scenes, or another test is asked for.
 void require_after_in_scene(const TraceOptions& options, std::size_t rays);
 SceneHit last_hit(const AfterView& after, std::size_t i);
+// Throws std::invalid_argument for another test than exact, and if a geometry does not consist of triangles.
+void require_triangles(const Scene& scene, const TraceOptions& options);
 
 }  // namespace raylanes

@@ -36,6 +36,7 @@ struct SceneReport {
   std::size_t common_triangles = 0;  ///< their triangles
   std::size_t common_bytes = 0;      ///< the memory of the common tree, besides the trees of geometries
 };
+struct SceneStretch;
 
 /// Geometries and instances that place them. Both are numbered from 0, in the order in which they are added.
 /// Call update() after any change, before the next query. Many threads may query one object at the same time, but not
@@ -273,6 +274,7 @@ class Scene {
   SceneReport report() const noexcept;
 
  private:
+  friend RayLists<SceneStretch> stretches(const Scene&, RayView, const ListOptions&, std::uint32_t);
   // A ray, with any options.
   [[gnu::cold, gnu::visibility("hidden")]] SceneHit closest_by_options(const Ray& ray,
                                                                        const TraceOptions& options,

@@ -5,6 +5,7 @@
 
 #include <raylanes/doubles.hpp>
 #include <raylanes/queries.hpp>
+#include <raylanes/scene.hpp>
 #include <raylanes/triangle_tree.hpp>
 
 namespace raylanes {
@@ -23,6 +24,12 @@ struct StretchRecord {
 using Stretch = StretchRecord<float>;
 /// A stretch of a ray of doubles.
 using StretchD = StretchRecord<double>;
+/// A stretch of a ray within an instance of a scene.
+struct SceneStretch : Stretch {
+  std::uint32_t geometry, instance;  ///< of the scene, as in SceneHit
+
+  bool operator==(const SceneStretch&) const = default;
+};
 
 /// Returns the stretches of each ray within the solids of a tree, in order: each entry with its exit.
 /// They are made of crossings(): the winding number is 0 at the far end of the ray's line, and changes by the sides of
@@ -36,5 +43,12 @@ using StretchD = StretchRecord<double>;
 RayLists<Stretch> stretches(const TriangleTree& tree, RayView rays, const ListOptions& options = {});
 /// Returns the stretches of each ray of doubles within the solids of a tree, in order.
 RayLists<StretchD> stretches(const BvhD& tree, RayViewD rays, const ListOptions& options = {});
+/// Returns the stretches of each ray within the instances of a scene whose mask has a bit in common with `mask`, in the
+/// order of entries, then of instances. Each instance has stretches of its own, as stretches() of its tree and the ray
+/// in its space: where instances overlap, so do their stretches. options.skip takes hits in scenes.
+/// Throws as stretches() of a tree, std::invalid_argument if a geometry does not consist of triangles, and
+/// std::logic_error if the scene was changed without update().
+RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options = {},
+                                 std::uint32_t mask = ~0u);
 
 }  // namespace raylanes

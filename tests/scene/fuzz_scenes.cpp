@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <raylanes/paths.hpp>
+#include <raylanes/stretches.hpp>
 
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/fence.hpp"
@@ -199,6 +200,23 @@ void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const Tra
   }
 }
 
+// The stretches of a scene are those of its instances, by their own trees.
+void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
+                      std::uint32_t mask) {
+  const auto lists = stretches(scene, rays, {.path = options.path, .threads = options.threads}, mask);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    std::vector<Stretch> expected;
+    expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
+      const auto of_instance = stretches(*scene.tree(geometry), std::vector{ray}, {.path = &paths().front()});
+      expected.insert(expected.end(), of_instance.items.begin(), of_instance.items.end());
+      return Hit();
+    });
+    std::ranges::stable_sort(expected, {}, &Stretch::entry);
+    if (!std::ranges::equal(lists[i], expected, [](const Stretch& a, const Stretch& b) { return a == b; }))
+      fail("stretches: ray " + std::to_string(i) + " on " + options.path->name);
+  }
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -289,7 +307,8 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   expect_same(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options, mask);
-  if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
+  if (bytes.chance(64))
+    expect_passages(scene, rays, options, mask), expect_stretches(scene, rays, options, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});
