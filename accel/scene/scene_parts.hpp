@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "common_tree.hpp"
+#include "common/common_tree.hpp"
 
 namespace raylanes {
 

@@ -200,7 +200,7 @@ void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const Tra
   }
 }
 
-// The stretches of a scene are those of its instances, by their own trees.
+// A scene has the stretches of its instances, by their own trees.
 void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
                       std::uint32_t mask) {
   const auto lists = stretches(scene, rays, {.path = options.path, .threads = options.threads}, mask);

@@ -1,4 +1,4 @@
-// Stretches of rays within the instances of scenes: those of each instance's tree and the ray in its space.
+// Stretches of rays within the instances of scenes, compared with the tree of each instance and the ray in its space.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

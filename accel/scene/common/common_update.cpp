@@ -4,10 +4,10 @@
 #include <map>
 #include <numeric>
 
-#include "../layout/bvh_arrays.hpp"
-#include "../queries/traced_tree.hpp"
+#include "../../layout/bvh_arrays.hpp"
+#include "../../queries/traced_tree.hpp"
+#include "../scene_parts.hpp"
 #include "common_tree.hpp"
-#include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "../../dispatch/table/traversal.hpp"
-#include "../layout/reference.hpp"
-#include "geometry.hpp"
-#include "instance.hpp"
+#include "../../../dispatch/table/traversal.hpp"
+#include "../../layout/reference.hpp"
+#include "../geometry.hpp"
+#include "../instance.hpp"
 
 namespace raylanes {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "../queries/traced_tree.hpp"
+#include "../../queries/traced_tree.hpp"
 
 namespace raylanes {
 namespace {
