@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <raylanes/boxes.hpp>
+#include <raylanes/points.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
 
