@@ -307,8 +307,8 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   expect_same(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options, mask);
-  if (bytes.chance(64))
-    expect_passages(scene, rays, options, mask), expect_stretches(scene, rays, options, mask);
+  if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
+  if (bytes.chance(16)) expect_stretches(scene, rays, options, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});
