@@ -54,14 +54,12 @@ class DoublePoints {
   using Triangles = ScaledTriangles;
   using Decided = Doubles<half>;
   static constexpr int decided = half;
-  static constexpr bool compares_far = false;
-
-  // A point in units of 1 / scale, and in the frame. Far ones have units of their own, and come to all leaves.
+  // A point in units of 1 / scale, and in the frame. The farthest have units of their own, and come to all leaves.
   struct Place {
     Double3 exact;
     double scale;
     Float3 at;
-    bool is_far;
+    bool is_farthest;
   };
   struct Packet : PointPacket {
     double exact[3][packet_points];
@@ -82,7 +80,7 @@ class DoublePoints {
   ScaledTriangles triangles() const { return {DoubleTriangles(tree_), scale_}; }
   ScaledTriangles triangles_for(const Place& point) const { return {DoubleTriangles(tree_), point.scale}; }
   BoxDistance<N> boxes(const Place& point) const {
-    return {point.at, point.is_far ? 2.0f : largest_, point.is_far ? 0x1p-399 : per_unit_};
+    return {point.at, point.is_farthest ? 2.0f : largest_, point.is_farthest ? 0x1p-399 : per_unit_};
   }
   BoxDistance<N> boxes(const Box& points, float scale) const { return {points, scale, per_unit_}; }
   double max_squared(double distance) const { return max_squared_in(distance, scale_); }
@@ -107,7 +105,19 @@ class DoublePoints {
   Place place_of(const Packet& packet, int i) const {
     return {{packet.exact[0][i], packet.exact[1][i], packet.exact[2][i]}, scale_, packet.point(i), false};
   }
-  static bool is_far(const Place& point) { return point.is_far; }
+  // As FloatPoints has them. In the frame the tree has the size 1 to 2, if its own size is not extreme.
+  bool is_compared_far(const Place& point) const {
+    return !point.is_farthest && tree_.frame.power <= 900 && tree_.frame.power >= -900 &&
+           is_distant(point.at, tree_.tree.bounds);
+  }
+  bool is_far(const Place& point) const { return point.is_farthest || is_compared_far(point); }
+  Double3 in_space_of_nodes(const Place& point) const {
+    Double3 at;
+    for (std::size_t k = 0; k < 3; ++k) at[k] = point.exact[k] * per_unit_ - tree_.frame.centre[k];
+    return at;
+  }
+  double squared_in_space_of_nodes(double squared) const { return squared * per_unit_ * per_unit_; }
+  static const Double3& exact_of(const Place& point) { return point.exact; }
   static void add(Packet& packet, const Place& point, std::size_t i) {
     for (std::size_t axis = 0; axis < 3; ++axis) packet.exact[axis][packet.size] = point.exact[axis];
     packet.add(point.at, i);
@@ -128,19 +138,30 @@ class DoublePoints {
     return DoubleTriangles::first_of(leaf_of(leaf)) + static_cast<std::uint32_t>(triangle);
   }
 
-  // Corners less a point, in the units of BoxDistance, rounded to floats. The lanes of half a leaf are there twice.
+  // Lanes of a row of corners by a function of doubles, rounded to floats. The lanes of half a leaf are there twice.
+  template <class Function>
+  static Floats<N> floats_of_row(const Rows& rows, int row, int first, const Function& function) {
+    const double* const numbers = rows.numbers + first + static_cast<std::uint32_t>(row) * rows.lanes;
+    const int second = N == tree_width ? static_cast<int>(rows.lanes) - half : half;
+    return floats_of<N>([&](int at) { return function(Doubles<half>::load(numbers + at)); }, second);
+  }
+  // The difference from the centre of the frame is rounded once, in doubles.
+  Floats<N> less_middle(const Rows& rows, int row, int first, float middle, float scale) const {
+    using D = Doubles<half>;
+    const D in_frame(power_of_two(tree_.frame.power)), unit(static_cast<double>(scale)),
+        centre(tree_.frame.centre[static_cast<std::size_t>(row % 3)]), from(static_cast<double>(middle));
+    return floats_of_row(rows, row, first, [&](D x) { return ((x * in_frame - centre) - from) * unit; });
+  }
+
+  // Corners less a point, in the units of BoxDistance, rounded to floats.
   struct Corners {
     Doubles<half> scale;
     Vec3<Doubles<half>> origin;  // in these units
 
     Vec3<Floats<N>> corner(const Rows& rows, int k, int first) const {
-      const double* const numbers = rows.numbers + first;
       const auto less = [&](int axis, const Doubles<half>& from) {
-        const double* const row = numbers + static_cast<std::uint32_t>(3 * k + axis) * rows.lanes;
-        const int second = N == tree_width ? static_cast<int>(rows.lanes) - half : half;
-        return floats_of<N>(
-            [&](int at) { return multiply_add<Grade::fast>(Doubles<half>::load(row + at), scale, -from); },
-            second);
+        return floats_of_row(rows, 3 * k + axis, first,
+                             [&](Doubles<half> x) { return multiply_add<Grade::fast>(x, scale, -from); });
       };
       return {less(0, origin.x), less(1, origin.y), less(2, origin.z)};
     }
@@ -154,7 +175,7 @@ class DoublePoints {
     Before(const Place& point, const BoxDistance<N>& boxes)
         : corners{Doubles<half>(point.scale * boxes.unit()), {}},
           exact(doubles_of<half>(point.exact)),
-          least_limit(point.is_far ? std::numeric_limits<float>::max() : 0.0f) {
+          least_limit(point.is_farthest ? std::numeric_limits<float>::max() : 0.0f) {
       Doubles<half> unit(boxes.unit());
       corners.origin = {exact.x * unit, exact.y * unit, exact.z * unit};
     }

@@ -15,7 +15,8 @@ class FarPoint {
   using V = Floats<node_lanes>;
 
  public:
-  FarPoint(const Float3& point, const Box& bounds, double max_squared) {
+  // All in the space of nodes.
+  FarPoint(const Double3& point, const Box& bounds, double max_squared) {
     float extent = 0.0f;
     for (std::size_t k = 0; k < 3; ++k) {
       const float along = bounds.hi[k] - bounds.lo[k];
@@ -25,10 +26,10 @@ class FarPoint {
     double p[3], largest = 0.0, square = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const float middle = 0.5f * bounds.lo[k] + 0.5f * bounds.hi[k];
-      p[k] = (static_cast<double>(point[k]) - static_cast<double>(middle)) * static_cast<double>(scale_);
+      p[k] = (point[k] - static_cast<double>(middle)) * static_cast<double>(scale_);
       const double size = p[k] < 0.0 ? -p[k] : p[k];
       largest = size > largest ? size : largest, square += p[k] * p[k];
-      middle_[k] = V(middle), point_[k] = V(static_cast<float>(p[k]));
+      middle_[k] = middle, point_[k] = V(static_cast<float>(p[k]));
     }
     double most = 2.0;
     while (most <= largest) most *= 2.0;
@@ -57,11 +58,11 @@ class FarPoint {
 
   // Bounds of triangles: no place of one is below its least corner by more than a quarter of the squares of its edges
   // over 2M.
-  template <class Rows>
-  BoundsOfTriangles<V> bounds(const Rows& rows, int first) const {
+  template <class Points, class Rows>
+  BoundsOfTriangles<V> bounds(const Points& points, const Rows& rows, int first) const {
     const auto corner = [&](int k) {
       const auto number = [&](int axis) {
-        return in_units(V::load(&rows.number[3 * k + axis][first]), static_cast<std::size_t>(axis));
+        return points.less_middle(rows, 3 * k + axis, first, middle_[axis], scale_);
       };
       return Vec3<V>(number(0), number(1), number(2));
     };
@@ -77,7 +78,7 @@ class FarPoint {
   }
 
  private:
-  V in_units(V x, std::size_t axis) const { return (x - middle_[axis]) * V(scale_); }
+  V in_units(V x, std::size_t axis) const { return (x - V(middle_[axis])) * V(scale_); }
   V term(V q, std::size_t axis) const {
     return q * multiply_add<Grade::fast>(q, V(half_inverse_), -share_[axis]);
   }
@@ -91,7 +92,8 @@ class FarPoint {
     return max(((nearest(0) + nearest(1)) + nearest(2)) + V(4.0f - 0x1p-18f), V(0.0f));
   }
 
-  V middle_[3], point_[3], share_[3];  // the point in units, and over M
+  float middle_[3];
+  V point_[3], share_[3];  // the point in units, and over M
   float scale_, half_inverse_, error_, limit_;
 };
 
@@ -99,16 +101,17 @@ class FarPoint {
 template <class Points>
 class FarBounds {
  public:
-  FarBounds(const FarPoint& far, const typename Points::Place& point)
-      : far_(far), exact_(doubles_of<half_of<node_lanes>>(point)) {}
+  FarBounds(const Points& points, const FarPoint& far, const typename Points::Place& point)
+      : points_(points), far_(far), exact_(doubles_of<half_of<node_lanes>>(Points::exact_of(point))) {}
   static float limit_of_boxes(float tmax) { return tmax; }
   template <class Rows>
   auto bounds(const Rows& rows, int first) const {
-    return far_.bounds(rows, first);
+    return far_.bounds(points_, rows, first);
   }
   const auto& exact() const { return exact_; }
 
  private:
+  const Points& points_;
   const FarPoint& far_;
   Vec3<Doubles<half_of<node_lanes>>> exact_;
 };

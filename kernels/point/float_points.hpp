@@ -52,6 +52,19 @@ inline double square_of_diagonal(const Box& box) {
   return square;
 }
 
+// Whether a point is so far from a tree that FarPoint tells triangles apart that squares of distances do not, up to
+// where doubles do.
+inline bool is_distant(const Float3& point, const Box& bounds) {
+  float distance = 0.0f, extent = 0.0f;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float lo = bounds.lo[k], hi = bounds.hi[k];
+    extent = hi - lo > extent ? hi - lo : extent;
+    distance = lo - point[k] > distance ? lo - point[k] : point[k] - hi > distance ? point[k] - hi : distance;
+  }
+  return distance >= 0x1p6f * extent && distance <= 0x1p40f * extent && extent >= 0x1p-60f &&
+         extent <= 0x1p60f;
+}
+
 class FloatPoints {
  public:
   using Number = float;
@@ -61,8 +74,6 @@ class FloatPoints {
   using Triangles = TreeTriangles;
   using Decided = Floats<node_lanes>;  // the triangles that are decided together
   static constexpr int decided = node_lanes;
-
-  static constexpr bool compares_far = true;  // whether far points have FarPoint
 
   explicit FloatPoints(const TreeView& tree)
       : tree_(tree), largest_(largest_magnitude(tree.bounds.lo, largest_magnitude(tree.bounds.hi))) {}
@@ -78,19 +89,14 @@ class FloatPoints {
   static bool is_number(const Float3& point) { return is_finite(point); }
   static const Place& place_of(const Float3& point) { return point; }
   static Place place_of(const PointPacket& packet, int i) { return packet.point(i); }
-  bool is_far(const Place& point) const {
-    float distance = 0.0f, extent = 0.0f;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float lo = tree_.bounds.lo[k], hi = tree_.bounds.hi[k];
-      extent = hi - lo > extent ? hi - lo : extent;
-      distance = lo - point[k] > distance   ? lo - point[k]
-                 : point[k] - hi > distance ? point[k] - hi
-                                            : distance;
-    }
-    // From there on FarPoint tells triangles apart that squares of distances do not, up to where doubles do.
-    return distance >= 0x1p6f * extent && distance <= 0x1p40f * extent && extent >= 0x1p-60f &&
-           extent <= 0x1p60f;
+  // Whether a point has FarPoint, and whether it goes alone.
+  bool is_compared_far(const Place& point) const { return is_distant(point, tree_.bounds); }
+  bool is_far(const Place& point) const { return is_compared_far(point); }
+  static Double3 in_space_of_nodes(const Place& point) {
+    return {static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2])};
   }
+  static double squared_in_space_of_nodes(double squared) { return squared; }
+  static const Place& exact_of(const Place& point) { return point; }
   static void add(PointPacket& packet, const Place& point, std::size_t i) { packet.add(point, i); }
 
   static const LeafBlock<9>& rows_of(const TreeTriangles& triangles, TreeReference leaf) {
@@ -101,6 +107,13 @@ class FloatPoints {
   }
   static std::uint32_t leaf_triangle(TreeReference leaf, int triangle) {
     return leaf_triangle_of(leaf, triangle);
+  }
+
+  // A row of corners in units from the middle of the tree.
+  static Floats<node_lanes> less_middle(const LeafBlock<9>& rows, int row, int first, float middle,
+                                        float scale) {
+    using V = Floats<node_lanes>;
+    return (V::load(&rows.number[row][first]) - V(middle)) * V(scale);
   }
 
   // Corners in the units of BoxDistance.

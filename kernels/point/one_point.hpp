@@ -56,8 +56,9 @@ inline ClosestPointOf<typename Points::Number> closest_by(const Points& points,
 template <class Points, class Counters>
 [[gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_far_point(
     const Points& points, const typename Points::Place& point, double max_squared, const Counters& counters) {
-  const FarPoint far(point, points.nodes().bounds, max_squared);
-  NearTriangles<Points, FarBounds<Points>> near({far, point}, far.limit(), max_squared);
+  const FarPoint far(points.in_space_of_nodes(point), points.nodes().bounds,
+                     points.squared_in_space_of_nodes(max_squared));
+  NearTriangles<Points, FarBounds<Points>> near({points, far, point}, far.limit(), max_squared);
   return closest_by(points, point, far, near, counters);
 }
 
@@ -67,9 +68,8 @@ template <class Points, class Counters>
 [[gnu::flatten, gnu::noinline]] ClosestPointOf<typename Points::Number> closest_to_point(
     const Points& points, const typename Points::Place& point, double max_squared, double near_squared,
     const Counters& counters) {
-  if constexpr (Points::compares_far)
-    if (points.is_far(point)) [[unlikely]]
-      return closest_to_far_point(points, point, max_squared, counters);
+  if (points.is_compared_far(point)) [[unlikely]]
+    return closest_to_far_point(points, point, max_squared, counters);
   BoxDistance<node_lanes> boxes = points.boxes(point);
   NearTriangles<Points> near(
       {point, boxes}, boxes.limit(near_squared < max_squared ? near_squared : max_squared), max_squared);

@@ -83,8 +83,11 @@ TYPED_TEST(ClosestPointsOf, trees_are_found_from_far_away) {
   Mesh aside = triangle_soup(150, 0.3f, 2725), small = ellipsoid(1, {0, 0, 0});
   for (Float3& vertex : aside.vertices) vertex[0] += 1000, vertex[2] -= 3;
   scale(small, 0x1p-70f);
-  for (const Mesh& of_floats : {ellipsoid(2, {0, 0, 0}), integer_grid(8), aside, small}) {
-    const auto mesh = this->mesh_of(of_floats, 1, {0, 0, 0});
+  std::vector meshes{this->mesh_of(ellipsoid(2, {0, 0, 0}), 1, {0, 0, 0}),
+                     this->mesh_of(integer_grid(8), 1, {0, 0, 0}), this->mesh_of(aside, 1, {0, 0, 0}),
+                     this->mesh_of(small, 1, {0, 0, 0})};
+  if (!TestFixture::has_floats) meshes.push_back(this->mesh_of(ellipsoid(2, {0, 0, 0}), 1, {5e9, -4e10, 7}));
+  for (const auto& mesh : meshes) {
     const auto bounds = typename TestFixture::Tree(mesh.vertices, mesh.triangles).bounds();
     const auto extent = bounds.hi[0] - bounds.lo[0];
     typename TestFixture::Points points;

@@ -9,6 +9,8 @@ MUTANTS = [
         ('box: the far side not widened', '1.0f + 3.0f * std::numeric_limits<float>::epsilon()', '1.0f')),
     *rows_of('kernels/doubles/double_points.hpp', 'test_doubles',
         ('doubles: far points as near ones', 'x <= 0x1p60 && x >= -0x1p60', 'x <= 0x1p1000'),
+        ('doubles: far corners rounded before the middle', '((x * in_frame - centre) - from) * unit',
+         '((x * in_frame - centre) * unit - from)'),
         ('doubles: floats decide for points that go together', 'error_of_floats + 0x1p-14f', '-0.01f')),
     *rows_of('kernels/doubles/double_streams.hpp', 'test_doubles',
         ('doubles: hits of streams stay unscaled', 'best.tmax * scale + 0x1p-500', 'best.tmax')),
