@@ -129,9 +129,13 @@ void require_after(const char* call, const AfterRecords<Record>& after, std::siz
 }
 // The primitive that the one ray of a call skips.
 template <class Options>
+std::uint32_t skipped_by_one(const Options& options) {
+  return options.skip.first != nullptr ? options.skip[0] : no_primitive;
+}
+template <class Options>
 std::uint32_t skip_of_one(const char* call, const Options& options) {
   require_skip(call, options.skip, 1);
-  return options.skip.first != nullptr ? options.skip[0] : no_primitive;
+  return skipped_by_one(options);
 }
 template <class Number>
 void require_points(const char* call, const VertexRecords<Number>& points) {

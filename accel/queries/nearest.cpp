@@ -8,6 +8,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/checked_call.hpp"
 #include "lists.hpp"
@@ -101,6 +102,12 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   return choice;
 }
 
+// Whether a call with one ray sets no more than facing, skip, test, grade and path.
+bool is_usual_but_chosen(const TraceOptions& options) {
+  return options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
+         options.threads == 1 && options.counters == nullptr && options.after.first == nullptr &&
+         static_cast<std::size_t>(options.grade) < grade_names.size();
+}
 // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
 bool is_quick(const TreeView* ready) {
   return ready != nullptr && !QuietFloats::are_wanted();
@@ -122,14 +129,18 @@ void trace_segments(const TracedTree& tree, const Segments& segments, std::span<
 
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
-  const bool is_usual =
-      options.mode == TraversalMode::automatic && options.hint == BatchHint::none && options.threads == 1 &&
-      options.facing == Facing::any && options.counters == nullptr && options.after.first == nullptr &&
-      options.skip.first == nullptr && test < std::size(triangle_tests) && grade < grade_names.size();
+  const bool is_usual = is_usual_but_chosen(options) && options.facing == Facing::any &&
+                        options.skip.first == nullptr && test < std::size(triangle_tests);
   if (!is_usual) return nullptr;
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
+}
+const ChosenCallRow* chosen_row(const TraceOptions& options) {
+  const bool is_usual = is_usual_but_chosen(options) && options.test == TriangleTest::exact &&
+                        static_cast<std::size_t>(options.facing) < facing_names.size() &&
+                        options.skip.count == (options.skip.first != nullptr ? 1 : 0);
+  return is_usual ? &kernels_of(checked_path(options.path)).queries.plain.chosen_call : nullptr;
 }
 const CallRow& default_row() {
   constexpr TraceOptions options;
@@ -170,15 +181,21 @@ Hit TriangleTree::closest(const Ray& ray) const {
   return is_quick(ready_) ? default_row().closest(*ready_, ray) : closest_by_options(ray, {});
 }
 Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
-  const CallRow* const row = is_quick(ready_) ? usual_row(options) : nullptr;
-  return row != nullptr ? row->closest(*ready_, ray) : closest_by_options(ray, options);
+  if (!is_quick(ready_)) return closest_by_options(ray, options);
+  if (const CallRow* const row = usual_row(options)) return row->closest(*ready_, ray);
+  const ChosenCallRow* const chosen = chosen_row(options);
+  return chosen != nullptr ? chosen->closest(*ready_, ray, options.facing, skipped_by_one(options))
+                           : closest_by_options(ray, options);
 }
 bool TriangleTree::occluded(const Ray& ray) const {
   return is_quick(ready_) ? default_row().any(*ready_, ray) : occluded_by_options(ray, {});
 }
 bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
-  const CallRow* const row = is_quick(ready_) ? usual_row(options) : nullptr;
-  return row != nullptr ? row->any(*ready_, ray) : occluded_by_options(ray, options);
+  if (!is_quick(ready_)) return occluded_by_options(ray, options);
+  if (const CallRow* const row = usual_row(options)) return row->any(*ready_, ray);
+  const ChosenCallRow* const chosen = chosen_row(options);
+  return chosen != nullptr ? chosen->any(*ready_, ray, options.facing, skipped_by_one(options))
+                           : occluded_by_options(ray, options);
 }
 
 Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {

@@ -11,6 +11,8 @@
 
 namespace raylanes {
 
+struct ChosenCallRow;
+
 // Which kernels walk a tree.
 enum class TreeKind { bvh, kdtree };
 
@@ -45,6 +47,8 @@ struct Traversal {
 // or the test has no such row.
 const CallRow& default_row();
 const CallRow* usual_row(const TraceOptions& options);
+// The row for a call with one ray that sets facing and skip besides, if at all; null if there is none.
+const ChosenCallRow* chosen_row(const TraceOptions& options);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);

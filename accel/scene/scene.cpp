@@ -5,6 +5,7 @@
 
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/checked_call.hpp"
 #include "../queries/traced_tree.hpp"
@@ -59,6 +60,20 @@ const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
   return is_quick ? scene.seen_common(mask) : nullptr;
 }
 
+// The same for a call that may skip a triangle: the row, and that triangle in the tree. A row of null: another way.
+struct CallOfOne {
+  const ChosenCallRow* row = nullptr;
+  std::uint32_t skipped = no_primitive;
+
+  CallOfOne(const CommonTree* tree, const TraceOptions& options) {
+    const PrimitiveView& skip = options.skip;
+    if (tree == nullptr || skip.first == nullptr || skip.to_instance == 0 || options.facing != Facing::any)
+      return;
+    row = chosen_row(options);
+    if (row != nullptr) skipped = tree->numbers().of(skip.instance(0), skip[0]);
+  }
+};
+
 }  // namespace
 
 void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
@@ -78,6 +93,8 @@ SceneHit Scene::closest(const Ray& ray) const {
 }
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   const CommonTree* const tree = quick_tree(parts(), mask);
+  if (const CallOfOne call(tree, options); call.row != nullptr)
+    return tree->numbers().owners.spread(call.row->closest(*tree->view, ray, Facing::any, call.skipped));
   if (tree == nullptr || options.test != TriangleTest::exact || usual_row(options) == nullptr)
     return closest_by_options(ray, options, mask);
   return kernels_of(checked_path(options.path))
@@ -100,6 +117,8 @@ bool Scene::occluded(const Ray& ray) const {
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   const CommonTree* const tree = quick_tree(parts(), mask);
+  if (const CallOfOne call(tree, options); call.row != nullptr)
+    return call.row->any(*tree->view, ray, Facing::any, call.skipped);
   const CallRow* const row = tree != nullptr ? usual_row(options) : nullptr;
   return row != nullptr ? row->any(*tree->view, ray) : occluded_by_options(ray, options, mask);
 }

@@ -17,9 +17,14 @@ namespace {
 bool is_quick(const BvhDArrays* tree) {
   return tree != nullptr && !QuietFloats::are_wanted();
 }
-// The same where a call has options, which may only name a path.
+// The same where a call has options, which may name a path, sides, and a primitive to skip.
 bool is_quick(const BvhDArrays* tree, const TraceOptionsD& options) {
-  return options.threads == 1 && takes_all(options) && options.after.first == nullptr && is_quick(tree);
+  return options.threads == 1 && static_cast<std::size_t>(options.facing) < facing_names.size() &&
+         options.skip.count == (options.skip.first != nullptr ? 1 : 0) && options.after.first == nullptr &&
+         is_quick(tree);
+}
+const DoubleRayKernels& kernels_in_use() {
+  return kernels_of(path_in_use()).doubles;
 }
 
 // Checks what refit() is given; returns whether the tree must be built again.
@@ -88,16 +93,17 @@ double BvhD::decay() const noexcept {
 }
 
 HitD BvhD::closest(const RayD& ray) const {
-  return is_quick(tree_.get()) ? kernels_of(path_in_use()).doubles.closest_of_ray(tree_->ready, ray)
+  return is_quick(tree_.get()) ? kernels_in_use().closest_of_ray(tree_->ready, ray, Facing::any, no_primitive)
                                : closest(ray, TraceOptionsD{});
 }
 bool BvhD::occluded(const RayD& ray) const {
-  return is_quick(tree_.get()) ? kernels_of(path_in_use()).doubles.any_of_ray(tree_->ready, ray)
+  return is_quick(tree_.get()) ? kernels_in_use().any_of_ray(tree_->ready, ray, Facing::any, no_primitive)
                                : occluded(ray, TraceOptionsD{});
 }
 HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
   if (is_quick(tree_.get(), options))
-    return kernels_of(checked_path(options.path)).doubles.closest_of_ray(tree_->ready, ray);
+    return kernels_of(checked_path(options.path))
+        .doubles.closest_of_ray(tree_->ready, ray, options.facing, skipped_by_one(options));
   const DoubleRayKernels& kernels = checked_kernels(options);
   const QuietFloats quiet;
   HitD hit;
@@ -113,7 +119,8 @@ HitD BvhD::closest(const RayD& ray, const TraceOptionsD& options) const {
 }
 bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
   if (is_quick(tree_.get(), options))
-    return kernels_of(checked_path(options.path)).doubles.any_of_ray(tree_->ready, ray);
+    return kernels_of(checked_path(options.path))
+        .doubles.any_of_ray(tree_->ready, ray, options.facing, skipped_by_one(options));
   const DoubleRayKernels& kernels = checked_kernels(options);
   const QuietFloats quiet;
   std::uint8_t occluded = 0;

@@ -69,9 +69,9 @@ using DoubleBatch = TraceBatchOf<double>;
 using DoubleListBatch = ListBatchOf<double>;
 
 struct DoubleRayKernels {
-  // A ray in a call of its own, as a batch of one ray with no options.
-  HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray);
-  bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray);
+  // A ray in a call of its own, as ChosenCallRow.
+  HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
+  bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
   // As in TraversalKernels, by numbers of TrianglesOfHalves.
   std::uint32_t (*nearest_triangle)(const DoubleTreeView& tree, const RayD& ray);
   void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);

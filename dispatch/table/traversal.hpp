@@ -28,6 +28,12 @@ struct TriangleOwners {
   [[gnu::always_inline]] const TriangleOwner& of(std::uint64_t triangle) const {
     return slots[triangle >> shift];
   }
+  // The hit of a scene.
+  [[gnu::always_inline]] SceneHit spread(const Hit& hit) const {
+    if (hit.primitive == no_primitive) return {};
+    const TriangleOwner& owner = of(hit.primitive);
+    return {hit.t, hit.u, hit.v, hit.primitive - owner.first, owner.geometry, owner.instance};
+  }
 };
 
 // The point that rays of a packet share: the begin of the first one, bit for bit; for `any` about where all end; for

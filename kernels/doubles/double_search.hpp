@@ -36,8 +36,11 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
 
 // The triangles that the caller chooses, if they are hit: one code serves all sides.
 struct ChosenHits : BothSides {
-  Facing facing = Facing::any;
-  std::uint32_t skipped = no_primitive;
+  Facing facing;
+  std::uint32_t skipped;
+
+  explicit ChosenHits(Facing sides = Facing::any, std::uint32_t primitive = no_primitive)
+      : facing(sides), skipped(primitive) {}
 };
 template <class Filtered>
 inline void leave_chosen(const DoubleTriangles& triangles, Filtered& filtered, std::uint32_t first,
@@ -57,7 +60,7 @@ struct AnyDouble : AsStored {
   int beside = never_beside;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, const ChosenHits& chosen = {})
+  AnyDouble(const RayD& ray, float end_of_ray, const ChosenHits& chosen = ChosenHits())
       : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
 };
@@ -171,24 +174,33 @@ template <class Rule>
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
+// A hit behind which all hits are.
+inline constexpr HitD before_all_doubles{-std::numeric_limits<double>::infinity(), 0.0, 0.0, 0, 0};
+
 // A ray in a call of its own.
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return nearest_triangle(tree, ray, ray.tmin, BothSides());
 }
-[[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
-  return known_hit(DoubleTriangles(tree), ray, nearest_triangle_of_ray(tree, ray));
+[[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
+                                            std::uint32_t skipped) {
+  const bool takes_all = facing == Facing::any && skipped == no_primitive;
+  return known_hit(DoubleTriangles(tree), ray,
+                   takes_all ? nearest_triangle_of_ray(tree, ray)
+                             : nearest_triangle(tree, ray, ray.tmin,
+                                                HitsBehind<HitD>{before_all_doubles, facing, skipped}));
 }
 
 [[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray,
-                                              const ChosenHits& sides = {}) {
+                                              const ChosenHits& sides = ChosenHits()) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
   AnyDouble query(ray, frame.ray.tmax, sides);
   search(tree, ray, frame, query);
   return query.found;
 }
-[[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray) {
-  return hits_any(tree, ray);
+[[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
+                                        std::uint32_t skipped) {
+  return hits_any(tree, ray, ChosenHits(facing, skipped));
 }
 
 }  // namespace

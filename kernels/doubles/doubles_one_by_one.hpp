@@ -45,9 +45,10 @@ struct HitsBehindLast {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr HitD before_any{-infinity, 0.0, 0.0, 0, 0};
 
-  const HitD& last_of(std::size_t i) const { return batch.after != nullptr ? batch.after[i] : before_any; }
+  const HitD& last_of(std::size_t i) const {
+    return batch.after != nullptr ? batch.after[i] : before_all_doubles;
+  }
 };
 struct AnyOfBatch {
   using Query = AnyDouble;
@@ -63,11 +64,7 @@ struct AnyOfBatch {
   void search(const DoubleTreeView& tree, std::size_t i, Query& query) const { query.found = hits(tree, i); }
 
  private:
-  ChosenHits sides(std::size_t i) const {
-    ChosenHits sides;
-    sides.facing = batch.facing, sides.skipped = skipped_by(batch, i);
-    return sides;
-  }
+  ChosenHits sides(std::size_t i) const { return ChosenHits(batch.facing, skipped_by(batch, i)); }
 };
 
 #if defined(__AVX2__) && defined(__FMA__)

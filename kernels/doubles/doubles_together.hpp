@@ -28,7 +28,7 @@ struct DoublesTogether : TraceBatch {
     if (only_decides())
       occluded[number] = hits_any(*tree, ray) ? 1 : 0;
     else
-      hits[number] = closest_double_of_ray(*tree, ray);
+      hits[number] = closest_double_of_ray(*tree, ray, Facing::any, no_primitive);
   }
 };
 

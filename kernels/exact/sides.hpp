@@ -84,6 +84,7 @@ struct ChosenTriangles {
 
   // For all rays of a batch, which skip nothing yet; for one.
   explicit ChosenTriangles(const TraceBatch& batch) : facing(batch.facing) {}
+  ChosenTriangles(Facing side, std::uint32_t primitive) : facing(side), skipped(primitive) {}
   template <class T>
   ChosenTriangles(const TraceBatchOf<T>& batch, std::size_t ray)
       : facing(batch.facing), skipped(skipped_by(batch, ray)) {}

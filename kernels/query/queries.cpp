@@ -1,5 +1,6 @@
 // Questions beyond the nearest hit, of one path: compiled once per path with its flags and back end; the table is the
 // only symbol that leaves the object.
+#include "../traverse/fused/calls.hpp"
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
 #include "hit_lists.hpp"
@@ -30,6 +31,7 @@ constexpr AllQueryKernels all_queries() {
       SingleRows<WalksNodes, NoCounters, ChosenTriangles>().template operator()<ExactTest>();
   kernels.plain.chosen_stream = {closest_stream<ExactTest, NoCounters, ChosenTriangles>,
                                  any_stream<ExactTest, NoCounters, ChosenTriangles>, OctantScratch::bytes};
+  kernels.plain.chosen_call = {closest_chosen<ExactTest>, any_chosen<ExactTest>};
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) {

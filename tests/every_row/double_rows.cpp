@@ -162,10 +162,18 @@ TEST_P(EveryRow, of_doubles) {
         EXPECT_TRUE(same_bytes(first, hits_of(mine, tree, rays, facing, nullptr, as)));
       compare_skips(mine, of_scalar, tree, rays, facing, first);
       const std::vector<std::uint8_t> occluded = occluded_by(mine, tree, rays, facing);
-      for (std::size_t i = 0; facing == Facing::any && i < n; ++i) {
-        EXPECT_TRUE(
-            same_bytes(std::vector{first[i]}, std::vector{mine.closest_of_ray(tree.view(), rays[i])}));
-        EXPECT_EQ(occluded[i] != 0, mine.any_of_ray(tree.view(), rays[i]));
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto call = [&](const DoubleRayKernels& rows, std::uint32_t skipped) {
+          const HitD hit = rows.closest_of_ray(tree.view(), rays[i], facing, skipped);
+          EXPECT_EQ(rows.any_of_ray(tree.view(), rays[i], facing, skipped), bool(hit));
+          return hit;
+        };
+        EXPECT_TRUE(same_bytes(first[i], call(mine, no_primitive)));
+        const HitD behind = call(mine, first[i].primitive);
+        EXPECT_TRUE(same_bytes(behind, call(of_scalar, first[i].primitive)));
+        EXPECT_TRUE(!behind || behind.primitive != first[i].primitive);
+        if (facing != Facing::any) continue;
+        EXPECT_EQ(occluded[i] != 0, bool(first[i]));
         const std::uint32_t triangle = mine.nearest_triangle(tree.view(), rays[i]);
         EXPECT_EQ(triangle, of_scalar.nearest_triangle(tree.view(), rays[i]));
         EXPECT_EQ(triangle == ~0u ? no_primitive : triangles.primitive(triangle), first[i].primitive);

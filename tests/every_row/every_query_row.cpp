@@ -151,6 +151,28 @@ void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRo
   EXPECT_FALSE(same_bytes(of_sides[1], of_sides[3]));
 }
 
+// Single calls against the single rays of scalar.
+void compare_chosen_calls(EveryRow& every, const ChosenCallRow& mine, const ChosenCallRow& of_scalar,
+                          const TraversalRow& single_of_scalar) {
+  if (!every.offers(mine.closest, of_scalar.closest) || !every.offers(mine.any, of_scalar.any)) return;
+  const SmallTree tree;
+  std::size_t found = 0;
+  for (const Facing side : {Facing::any, Facing::front, Facing::back})
+    for (const Ray& ray : some_rays())
+      for (std::uint32_t skipped = no_primitive, turn = 0; turn < 3; ++turn) {
+        Hit hit;
+        TraceBatch batch;
+        batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.facing = side, batch.skip = &skipped;
+        single_of_scalar.closest(tree.view, batch);
+        EXPECT_TRUE(same_bytes(hit, mine.closest(tree.view, ray, side, skipped)));
+        EXPECT_TRUE(same_bytes(hit, of_scalar.closest(tree.view, ray, side, skipped)));
+        EXPECT_EQ(mine.any(tree.view, ray, side, skipped), bool(hit));
+        EXPECT_EQ(of_scalar.any(tree.view, ray, side, skipped), bool(hit));
+        found += hit ? 1 : 0, skipped = hit.primitive;
+      }
+  EXPECT_GT(found, 20u);
+}
+
 // The rays that came to each leaf: a ray that nothing stops is at all leaves that its box tests let through, at least
 // at the leaves of its hits.
 void compare_visits(EveryRow& every, const QueryKernels& mine, const QueryKernels& of_scalar,
@@ -263,6 +285,7 @@ TEST_P(EveryRow, of_queries) {
     const std::size_t of_streams = kernels_of(path()).traversal.scratch_bytes(TraversalMode::stream, most);
     compare_chosen(*this, rows.chosen_single, scalars.chosen_single, scalars, of_streams);
     compare_chosen(*this, rows.chosen_stream, scalars.chosen_stream, scalars, of_streams);
+    compare_chosen_calls(*this, rows.chosen_call, scalars.chosen_call, scalars.chosen_single);
     compare_visits(*this, rows, scalars, of_streams, false);
     compare_visits(*this, rows, scalars,
                    kernels_of(path()).traversal.scratch_bytes(TraversalMode::packet, most), true);

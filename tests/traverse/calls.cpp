@@ -71,11 +71,20 @@ std::vector<TraceOptions> options_of_calls() {
        {TriangleTest::exact, TriangleTest::watertight, TriangleTest::moller_trumbore})
     for (const Grade grade : {Grade::reproducible, Grade::fast})
       all.push_back({.test = test, .grade = grade});
+  for (const Facing facing : {Facing::front, Facing::back}) all.push_back({.facing = facing});
   return all;
 }
 
+// The primitive that each ray hits, or none for each third one.
+std::vector<std::uint32_t> most_primitives(const std::vector<Hit>& hits) {
+  std::vector<std::uint32_t> primitives;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    primitives.push_back(i % 3 == 0 ? no_primitive : hits[i].primitive);
+  return primitives;
+}
+
 // Adds a failure unless calls on each path have the bytes of a batch, and by the exact test the bytes of the scalar
-// path.
+// path. By the exact test rays are traced again without the primitives that they hit.
 void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& rays) {
   for (const Path* path : supported_paths()) {
     const ForcedPath forced(*path);
@@ -85,13 +94,24 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
       batch.mode = TraversalMode::single, batch.path = is_exact ? &paths().front() : path;
       const std::vector<Hit> hits = trace(tree, rays, batch);
       const std::vector<std::uint8_t> occluded = trace_occluded(tree, rays, batch);
+      const std::vector<std::uint32_t> skip = most_primitives(hits);
+      if (is_exact) batch.skip = skip;
+      const std::vector<Hit> others = trace(tree, rays, batch);
+      const std::vector<std::uint8_t> others_occluded = trace_occluded(tree, rays, batch);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        const auto expect_same = [&](const Hit& hit, bool is_occluded, const char* call) {
-          EXPECT_TRUE(same_bytes(hit, hits[i])) << call << " of ray " << i << " of " << name_of(batch);
-          EXPECT_EQ(is_occluded, occluded[i] != 0) << call << " of ray " << i << " on " << path->name;
+        const auto expect_same = [&](const Hit& hit, bool is_occluded, const char* call, const Hit& wanted,
+                                     std::uint8_t wanted_occluded) {
+          EXPECT_TRUE(same_bytes(hit, wanted)) << call << " of ray " << i << " of " << name_of(batch);
+          EXPECT_EQ(is_occluded, wanted_occluded != 0) << call << " of ray " << i << " on " << path->name;
         };
-        expect_same(tree.closest(rays[i], options), tree.occluded(rays[i], options), "with options");
-        if (is_exact) expect_same(tree.closest(rays[i]), tree.occluded(rays[i]), "without options");
+        expect_same(tree.closest(rays[i], options), tree.occluded(rays[i], options), "with options", hits[i],
+                    occluded[i]);
+        if (is_exact && options.facing == Facing::any)
+          expect_same(tree.closest(rays[i]), tree.occluded(rays[i]), "without options", hits[i], occluded[i]);
+        TraceOptions chosen = options;
+        if (is_exact) chosen.skip = skip[i];
+        expect_same(tree.closest(rays[i], chosen), tree.occluded(rays[i], chosen), "with skip", others[i],
+                    others_occluded[i]);
         if (::testing::Test::HasFailure()) return;
       }
     }
@@ -103,8 +123,7 @@ void expect_calls_as_batches(const TriangleTree& tree, const std::vector<Ray>& r
 void expect_flights(Bvh& bvh, const std::vector<Ray>& rays) {
   const TraceOptions scalar{.mode = TraversalMode::single, .path = &paths().front()};
   const std::vector<Hit> hits = trace(bvh, rays, scalar);
-  std::vector<std::uint32_t> skip;
-  for (std::size_t i = 0; i < rays.size(); ++i) skip.push_back(i % 3 == 0 ? no_primitive : hits[i].primitive);
+  const std::vector<std::uint32_t> skip = most_primitives(hits);
   TraceOptions chosen = scalar;
   chosen.skip = skip;
   const std::vector<Hit> others = trace(bvh, rays, chosen);

@@ -3,6 +3,7 @@
 
 #include <raylanes/scene_hit.hpp>
 
+#include "../../exact/exact_test.hpp"
 #include "../single.hpp"
 
 namespace raylanes {
@@ -15,30 +16,38 @@ struct AsHit {
 struct AsSceneHit {
   const TriangleOwners& owners;
 
-  SceneHit operator()(const Hit& hit) const {
-    if (hit.primitive == no_primitive) return {};
-    const TriangleOwner& owner = owners.of(hit.primitive);
-    return {hit.t, hit.u, hit.v, hit.primitive - owner.first, owner.geometry, owner.instance};
-  }
+  SceneHit operator()(const Hit& hit) const { return owners.spread(hit); }
 };
 
-template <class Test>
-[[gnu::noinline]] Hit closest_of_batch(const TreeView& tree, const Ray& ray) {
-  Hit hit;
+// A batch of one ray, for the triangles that count.
+inline TraceBatch batch_of(const Ray& ray, const BothSides&) {
   TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit;
-  closest_single<WalksNodes, Test, NoCounters>(tree, batch);
+  batch.rays = &ray, batch.size = 1;
+  return batch;
+}
+inline TraceBatch batch_of(const Ray& ray, const ChosenTriangles& sides) {
+  TraceBatch batch = batch_of(ray, BothSides());
+  batch.facing = sides.facing, batch.skip = &sides.skipped;
+  return batch;
+}
+template <class Test, class Sides = BothSides>
+[[gnu::noinline]] Hit closest_of_batch(const TreeView& tree, const Ray& ray, Sides sides = {}) {
+  Hit hit;
+  TraceBatch batch = batch_of(ray, sides);
+  batch.hits = &hit;
+  closest_single<WalksNodes, Test, NoCounters, Sides>(tree, batch);
   return hit;
 }
 #if defined(__AVX2__) && defined(__FMA__)
-template <class Test, class As>
-[[gnu::always_inline]] inline auto closest_as(const TreeView& tree, const Ray& ray, const As& as) {
+template <class Test, class As, class Sides = BothSides>
+[[gnu::always_inline]] inline auto closest_as(const TreeView& tree, const Ray& ray, const As& as,
+                                              [[maybe_unused]] Sides sides = {}) {
   if (tree.root == empty_reference) return as(Hit());
   if constexpr (is_filtered<Test>) {
     FusedRay nodes;
     if (!nodes.template prepare<Test>(tree, ray)) [[unlikely]]
-      return as(closest_of_batch<Test>(tree, ray));
-    ClosestCandidate query(ray);
+      return as(closest_of_batch<Test>(tree, ray, sides));
+    auto query = nearest_of(Candidate(ray), sides);
     const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
     walk_rest<Test>(tree, ray, query, has_ended);
     if (query.leaf_triangle == no_leaf_triangle) return as(Hit());
@@ -54,42 +63,64 @@ template <class Test, class As>
   }
 }
 template <class Test>
-[[gnu::noinline, gnu::flatten]] Hit closest_fused(const TreeView& tree, const Ray& ray) {
-  return closest_as<Test>(tree, ray, AsHit());
-}
-template <class Test>
 bool any_fused(const TreeView& tree, const Ray& ray) {
   if (tree.root == empty_reference) return false;
   return is_occluded<Test>(tree, ray, finite_tmax(ray.tmax));
 }
 
+template <class Test>
+inline bool is_any_chosen(const TreeView& tree, const Ray& ray, ChosenTriangles sides) {
+  if (tree.root == empty_reference) return false;
+  ChosenAny query(ray, sides);
+  walk_from_root<Test>(tree, ray, query);
+  return query.found;
+}
+
+#else
+template <class Test, class As, class Sides = BothSides>
+auto closest_as(const TreeView& tree, const Ray& ray, const As& as, Sides sides = {}) {
+  return as(closest_of_batch<Test>(tree, ray, sides));
+}
+template <class Test, class Sides>
+[[gnu::noinline]] bool any_of_batch(const TreeView& tree, const Ray& ray, Sides sides) {
+  std::uint8_t occluded = 0;
+  TraceBatch batch = batch_of(ray, sides);
+  batch.occluded = &occluded;
+  any_single<WalksNodes, Test, NoCounters, Sides>(tree, batch);
+  return occluded != 0;
+}
+template <class Test>
+bool any_fused(const TreeView& tree, const Ray& ray) {
+  return any_of_batch<Test>(tree, ray, BothSides());
+}
+template <class Test>
+bool is_any_chosen(const TreeView& tree, const Ray& ray, ChosenTriangles sides) {
+  return any_of_batch<Test>(tree, ray, sides);
+}
+
+#endif
+
+template <class Test>
+[[gnu::noinline, gnu::flatten]] Hit closest_fused(const TreeView& tree, const Ray& ray) {
+  return closest_as<Test>(tree, ray, AsHit());
+}
 struct CallRows {
   template <class Test>
   constexpr CallRow operator()() const {
     return {closest_fused<Test>, any_fused<Test>};
   }
 };
-#else
-template <class Test, class As>
-auto closest_as(const TreeView& tree, const Ray& ray, const As& as) {
-  return as(closest_of_batch<Test>(tree, ray));
+// By the exact test.
+template <class Test>
+[[gnu::noinline, gnu::flatten]] Hit closest_chosen(const TreeView& tree, const Ray& ray, Facing facing,
+                                                   std::uint32_t skipped) {
+  return closest_as<Test>(tree, ray, AsHit(), ChosenTriangles(facing, skipped));
 }
 template <class Test>
-[[gnu::noinline]] bool any_of_batch(const TreeView& tree, const Ray& ray) {
-  std::uint8_t occluded = 0;
-  TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded;
-  any_single<WalksNodes, Test, NoCounters>(tree, batch);
-  return occluded != 0;
+[[gnu::noinline, gnu::flatten]] bool any_chosen(const TreeView& tree, const Ray& ray, Facing facing,
+                                                std::uint32_t skipped) {
+  return is_any_chosen<Test>(tree, ray, ChosenTriangles(facing, skipped));
 }
-
-struct CallRows {
-  template <class Test>
-  constexpr CallRow operator()() const {
-    return {closest_of_batch<Test>, any_of_batch<Test>};
-  }
-};
-#endif
 
 [[gnu::noinline, gnu::flatten, maybe_unused]] SceneHit closest_in_scene(const TreeView& tree,
                                                                         const TriangleOwners& owners,
