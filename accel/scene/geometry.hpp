@@ -38,8 +38,14 @@ class Geometry {
   // The bounds of all that can be hit. Hits may lie outside by a share of the largest coordinate of a ray's origin.
   virtual Box bounds() const = 0;
   virtual float slack() const { return 0.0f; }
-  // Its tree of triangles; null if it has none.
+  // Its tree of triangles, which a mesh builds at the first call; null if it has no triangles. Any thread may call it.
   virtual const Bvh* triangles() const { return nullptr; }
+  // Of a mesh, also before it has a tree: the number of triangles, their corners as nine numbers each, and how it is
+  // built. Corners of triangles that nothing hits may stay as they are.
+  virtual std::size_t mesh_triangles() const { return 0; }
+  virtual void put_corners(float*) const {}
+  virtual BuildOptions build_options() const { return {}; }
+  virtual bool has_tree() const { return true; }
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the

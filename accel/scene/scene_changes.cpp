@@ -130,6 +130,9 @@ void Scene::update(int threads) {
   CommonUpdate common(parts, bounds, threads);
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (common.has(i)) bounds[i] = {empty_box};
+  for (std::size_t i = 0; i < bounds.size(); ++i)
+    if (is_visited(bounds[i].box))
+      parts.geometries[parts.instances[i].geometry]->triangles();  // is built now
   parts.tops = tops_over(bounds);
   common.commit(parts);
   parts.traces_common = parts.common != nullptr;

@@ -1,9 +1,16 @@
 // Triangles in scenes.
 #include <istream>
+#include <mutex>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 
+#include "../../dispatch/checked.hpp"
+#include "../../dispatch/quiet_floats.hpp"
+#include "../builders/builder_table.hpp"
+#include "../builders/mesh_references.hpp"
+#include "../layout/bvh_arrays.hpp"
+#include "../mesh/valid_mesh.hpp"
 #include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"
 
@@ -11,13 +18,8 @@ namespace raylanes {
 namespace {
 
 struct TriangleGeometry : Geometry {
-  explicit TriangleGeometry(const std::shared_ptr<Bvh>& bvh) : tree(bvh), own(bvh.get()) {}
-  explicit TriangleGeometry(std::shared_ptr<const Bvh> bvh) : tree(not_null(std::move(bvh))) {}
-
-  Box bounds() const override { return tree->bounds(); }
-  const Bvh* triangles() const override { return tree.get(); }
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeOf::bvh(*tree).view;
+    const TreeView view = TreeOf::bvh(*triangles()).view;
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
@@ -31,20 +33,104 @@ struct TriangleGeometry : Geometry {
     trace_here(view, choice, batch);
   }
   GeometryRecord record(std::size_t, std::vector<Sphere>&) const override { return {triangle_geometry, 0}; }
-  void save(std::ostream& file) const override { tree->save(file); }
+  void save(std::ostream& file) const override { triangles()->save(file); }
+  // Makes its mesh another one, or returns what has it.
+  virtual std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) = 0;
+};
+
+struct TreeGeometry : TriangleGeometry {
+  explicit TreeGeometry(const std::shared_ptr<Bvh>& bvh) : tree(bvh), own(bvh.get()) {}
+  explicit TreeGeometry(std::shared_ptr<const Bvh> bvh) : tree(not_null(std::move(bvh))) {}
+
+  Box bounds() const override { return tree->bounds(); }
+  const Bvh* triangles() const override { return tree.get(); }
+  std::size_t mesh_triangles() const override {
+    const BvhArrays* const arrays = TreeOf::arrays(*tree);
+    return arrays != nullptr ? arrays->mesh_triangles : 0;
+  }
+  void put_corners(float* corners) const override {
+    const Leaves& leaves = TreeOf::bvh(*tree).leaves->corners;
+    for (const std::uint64_t place : leaves.places()) {
+      const Triangle triangle = leaves.triangle(place);
+      float* const to = corners + 9 * (place >> 32);
+      for (std::size_t k = 0; k < 9; ++k) to[k] = triangle.corner[k / 3][k % 3];
+    }
+  }
+  BuildOptions build_options() const override { return TreeOf::arrays(*tree)->built_with; }
+  std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) override;
 
   std::shared_ptr<const Bvh> tree;
   Bvh* own = nullptr;  // the same, if nobody else has it
 };
 
+// A mesh that has no tree until one is needed.
+class MeshGeometry : public TriangleGeometry {
+ public:
+  MeshGeometry(const VertexView& vertices, const IndexView& triangles, const BuildOptions& options)
+      : options_(options) {
+    checked_index("scene", "builder", options.builder, std::size(builders));
+    require_threads("scene", options.threads);
+    require_triangle_count("scene", triangles.count);
+    require_valid_mesh(vertices, triangles, options.threads);
+    options_.progress = {};
+    vertices_.reserve(vertices.count), triangles_.reserve(triangles.count);
+    for (std::size_t i = 0; i < vertices.count; ++i) vertices_.push_back(vertices[i]);
+    for (std::size_t i = 0; i < triangles.count; ++i) triangles_.push_back(triangles[i]);
+    for (const auto& [a, b, c] : triangles_)
+      if (!has_equal_corners(vertices_[a], vertices_[b], vertices_[c]))
+        for (const std::uint32_t corner : {a, b, c}) extend(bounds_, vertices_[corner]);
+  }
+
+  Box bounds() const override { return bounds_; }
+  const Bvh* triangles() const override {
+    std::call_once(is_building_, [&] {
+      tree_ = std::make_unique<Bvh>(vertices_, triangles_, options_);
+      has_tree_ = true;
+    });
+    return tree_.get();
+  }
+  std::size_t mesh_triangles() const override { return triangles_.size(); }
+  void put_corners(float* corners) const override {
+    for (const Index3& triangle : triangles_)
+      for (const std::uint32_t corner : triangle)
+        corners = std::copy(vertices_[corner].begin(), vertices_[corner].end(), corners);
+  }
+  BuildOptions build_options() const override { return options_; }
+  bool has_tree() const override { return has_tree_; }
+  std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) override {
+    if (has_tree())
+      return std::make_unique<TreeGeometry>(
+          std::make_shared<Bvh>(tree_->refitted(vertices, triangles, threads)));
+    require_size("refit", "triangles", triangles.count, "geometry", triangles_.size());
+    BuildOptions options = options_;
+    options.threads = threads;
+    return std::make_unique<MeshGeometry>(vertices, triangles, options);
+  }
+
+ private:
+  BuildOptions options_;
+  std::vector<Float3> vertices_;
+  std::vector<Index3> triangles_;
+  Box bounds_ = empty_box;
+  mutable std::once_flag is_building_;
+  mutable std::atomic<bool> has_tree_{false};
+  mutable std::unique_ptr<const Bvh> tree_;
+};
+
 std::unique_ptr<Geometry> triangles_of(Bvh tree) {
-  return std::make_unique<TriangleGeometry>(std::make_shared<Bvh>(std::move(tree)));
+  return std::make_unique<TreeGeometry>(std::make_shared<Bvh>(std::move(tree)));
+}
+
+std::unique_ptr<Geometry> TreeGeometry::refit(VertexView vertices, IndexView triangles, int threads) {
+  if (own == nullptr || is_shared) return triangles_of(tree->refitted(vertices, triangles, threads));
+  own->refit(vertices, triangles, threads);
+  return nullptr;
 }
 
 }  // namespace
 
 std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree) {
-  return std::make_unique<TriangleGeometry>(std::move(tree));
+  return std::make_unique<TreeGeometry>(std::move(tree));
 }
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere>, std::istream& file) {
   return triangles_of(Bvh::load(file));
@@ -56,6 +142,10 @@ std::uint32_t Scene::add(Bvh tree) {
 std::uint32_t Scene::add(std::shared_ptr<const Bvh> tree) {
   return changed().add(geometry_of_triangles(std::move(tree)));
 }
+std::uint32_t Scene::add(VertexView vertices, IndexView triangles, const BuildOptions& options) {
+  const QuietFloats quiet;
+  return changed().add(std::make_unique<MeshGeometry>(vertices, triangles, options));
+}
 void Scene::replace(std::uint32_t geometry, Bvh tree) {
   changed().replace(geometry, triangles_of(std::move(tree)));
 }
@@ -66,9 +156,8 @@ void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangl
   auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", changed().geometries, geometry).get());
   if (part == nullptr)
     throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
-  if (part->own == nullptr || part->is_shared)
-    return replace(geometry, part->tree->refitted(vertices, triangles, threads));
-  part->own->refit(vertices, triangles, threads);
+  if (auto other = part->refit(vertices, triangles, threads))
+    return changed().replace(geometry, std::move(other));
   changed().has_changed(geometry);
 }
 const Bvh* Scene::tree(std::uint32_t geometry) const& {

@@ -35,6 +35,8 @@ struct SceneReport {
   std::size_t common_instances = 0;  ///< instances in the common tree
   std::size_t common_triangles = 0;  ///< their triangles
   std::size_t common_bytes = 0;      ///< the memory of the common tree, besides the trees of geometries
+  std::size_t meshes_without_tree =
+      0;  ///< geometries added as meshes that needed no tree of their own so far
 };
 struct SceneStretch;
 
@@ -71,8 +73,9 @@ struct SceneStretch;
 /// - A tree of one instance is that of its geometry. So an instance alone in a scene costs nothing, nor does the only
 ///   one that may be in the tree, if its box has a quarter of the scene's surface.
 ///
-/// The common tree takes the memory of a Bvh of its triangles, besides the trees of geometries. Its build takes 48
-/// bytes a triangle more. It is built by the builder of the largest geometry in it.
+/// The common tree takes the memory of a Bvh of its triangles, besides geometries. These need no trees of their own if
+/// they are added as vertices and triangles. The build takes 48 bytes a triangle more, and uses the builder of the
+/// largest geometry in the tree.
 class Scene {
  public:
   /// Makes an empty scene.
@@ -91,6 +94,16 @@ class Scene {
   /// Adds a tree of triangles, which the scene owns from then on; returns the index of the geometry.
   /// Throws std::length_error for more than 2^28 geometries.
   std::uint32_t add(Bvh tree);
+  /// Adds a mesh, which the scene copies, and whose tree is built when it is first needed; returns the index of the
+  /// geometry. Instances in the common tree need none, so nothing is built or stored twice: a mesh takes 12 bytes a
+  /// vertex and 12 a triangle. update() builds the trees of the other instances. Otherwise the first call that needs
+  /// the tree builds it: tree(), save(), normals(), closest_crossing(), and queries after set_mask(). Many threads may
+  /// make that call at the same time. Throws as the constructor of Bvh does.
+  std::uint32_t add(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
+  /// Adds a mesh as its vertices and triangles.
+  std::uint32_t add(const Mesh& mesh, const BuildOptions& options = {}) {
+    return add(mesh.vertices, mesh.triangles, options);
+  }
   /// Adds spheres; returns the index of the geometry.
   std::uint32_t add(SphereTree spheres);
   /// Adds a tree that the scene shares with its other owners; nobody may change it until the scene no longer has it.
@@ -122,7 +135,8 @@ class Scene {
   /// Refits a geometry of triangles to a moved mesh, as Bvh::refit() does. Throws as that does, and std::out_of_range
   /// if there is no such geometry.
   void refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads = 1);
-  /// Returns the tree of a geometry; null if it is not one of triangles. Throws as replace() does.
+  /// Returns the tree of a geometry, which a mesh that was added without one builds first; null if the geometry is not
+  /// one of triangles. Throws as replace() and the constructor of Bvh do.
   /// The pointer is valid until the geometry is replaced or refitted or the scene is destroyed or assigned to.
   const Bvh* tree(std::uint32_t geometry) const&;
   /// Does not compile: the pointer would outlive a temporary scene.

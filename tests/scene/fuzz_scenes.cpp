@@ -278,7 +278,9 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   const Mesh meshes[] = {any_mesh(bytes), any_mesh(bytes)};
   Scene scene;
   for (const Mesh& mesh : meshes)
-    bytes.chance(128) ? scene.add(Bvh(mesh)) : scene.add(std::make_shared<const Bvh>(mesh));
+    bytes.chance(100)   ? scene.add(mesh)
+    : bytes.chance(128) ? scene.add(Bvh(mesh))
+                        : scene.add(std::make_shared<const Bvh>(mesh));
   Coordinates coordinates(bytes);
   const std::size_t instances = bytes.below(bytes.chance(64) ? 60 : 4);
   for (std::size_t i = 0; i < instances; ++i)

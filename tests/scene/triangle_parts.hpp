@@ -15,7 +15,7 @@ struct TriangleParts {
 
   std::uint32_t add(const Mesh& mesh) {
     meshes.push_back(mesh);
-    return scene.add(Bvh(mesh));
+    return meshes.size() % 2 == 0 ? scene.add(mesh) : scene.add(Bvh(mesh));
   }
   // By the tree of each part, ray by ray; and by rational numbers.
   SceneHit by_trees(const Ray& ray, std::uint32_t mask = ~0u) const {

@@ -19,28 +19,18 @@ unsigned shift_of_slots(std::size_t triangles, std::size_t members) {
   return most < 2 ? 0 : std::min(16u, static_cast<unsigned>(std::bit_width(most)) - 1);
 }
 
-// The corners of a tree's triangles, as nine numbers each. Those that the tree left out stay as they are.
-void put_corners(const Bvh& tree, float* corners) {
-  const Leaves& leaves = TreeOf::bvh(tree).leaves->corners;
-  for (const std::uint64_t place : leaves.places()) {
-    const Triangle triangle = leaves.triangle(place);
-    float* const to = corners + 9 * (place >> 32);
-    for (std::size_t k = 0; k < 9; ++k) to[k] = triangle.corner[k / 3][k % 3];
-  }
-}
-
-// Builds as the largest of the trees was built.
+// Builds as the largest of the meshes is built.
 Bvh united(const SceneParts& scene, std::span<const Member> members, int threads) {
-  const auto tree_of = [&](const Member& member) -> const Bvh& {
-    return *scene.geometries[member.geometry]->triangles();
+  const auto geometry_of = [&](const Member& member) -> const Geometry& {
+    return *scene.geometries[member.geometry];
   };
-  const auto most = std::ranges::max_element(members, {}, &Member::triangles);
-  BuildOptions options = TreeOf::arrays(tree_of(*most))->built_with;
+  BuildOptions options =
+      geometry_of(*std::ranges::max_element(members, {}, &Member::triangles)).build_options();
   options.threads = threads;
   const std::uint32_t count = (members.end() - 1)->first;
   std::vector<float> corners(9 * std::size_t{count});  // unused numbers are points, which trees leave out
   for (const Member& member : members.first(members.size() - 1))
-    put_corners(tree_of(member), corners.data() + 9 * std::size_t{member.first});
+    geometry_of(member).put_corners(corners.data() + 9 * std::size_t{member.first});
   std::vector<std::uint32_t> indices(3 * std::size_t{count});
   std::iota(indices.begin(), indices.end(), 0u);
   return Bvh(corners, indices, options);
@@ -56,12 +46,12 @@ CommonUpdate::CommonUpdate(const SceneParts& scene, std::span<const InstanceBoun
 }
 
 std::size_t CommonUpdate::triangles_of(std::size_t instance) const {
-  return TreeOf::arrays(*scene_.geometries[scene_.instances[instance].geometry]->triangles())->mesh_triangles;
+  return scene_.geometries[scene_.instances[instance].geometry]->mesh_triangles();
 }
 bool CommonUpdate::may_be_member(std::size_t i) const {
   const Instance& instance = scene_.instances[i];
   return instance.is_identity && instance.mask != 0 && is_visited(bounds_[i].box) &&
-         scene_.geometries[instance.geometry]->triangles() != nullptr;
+         scene_.geometries[instance.geometry]->mesh_triangles() > 0;
 }
 
 void CommonUpdate::look_at_instances() {
@@ -109,9 +99,7 @@ void CommonUpdate::keep_tree() {
 std::vector<std::uint32_t> CommonUpdate::chosen_members() {
   std::vector<std::uint32_t> chosen;
   std::size_t triangles = 0, most = 0;
-  for (const auto& geometry : scene_.geometries)
-    if (const auto tree = geometry->triangles(); tree != nullptr && TreeOf::arrays(*tree) != nullptr)
-      most += 2 * TreeOf::arrays(*tree)->mesh_triangles;
+  for (const auto& geometry : scene_.geometries) most += 2 * geometry->mesh_triangles();
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     if (standing_[i] != Standing::common && standing_[i] != Standing::waiting) continue;
     const std::size_t with_it = triangles + triangles_of(i);
