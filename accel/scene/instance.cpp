@@ -13,7 +13,7 @@ namespace {
 // The inverse by cofactors. Products of two floats are exact in doubles, so the inverse is as good as the determinant,
 // whose error is at most 2^-51 of the sum of its terms' sizes. Returns the relative error; negative if there is no
 // inverse.
-double invert(const Transform& transform, double (&inverse)[12]) {
+double invert(const Transform& transform, double (&inverse)[13]) {
   double a[3][4];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 4; ++j) a[i][j] = static_cast<double>(transform.row[i][j]);
@@ -29,9 +29,9 @@ double invert(const Transform& transform, double (&inverse)[12]) {
   // NaN and infinity end here, too; in the translation, at the bounds.
   if (!(std::abs(determinant) > 0x1p-48 * size)) return -1.0;
   for (int i = 0; i < 3; ++i) {
-    double* const row = inverse + 4 * i;
-    for (int j = 0; j < 3; ++j) row[j] = cofactor(j, i) / determinant;
-    row[3] = -((row[0] * a[0][3] + row[1] * a[1][3]) + row[2] * a[2][3]);
+    double* const row = inverse + i;
+    for (int j = 0; j < 3; ++j) row[3 * j] = cofactor(j, i) / determinant;
+    row[9] = -((row[0] * a[0][3] + row[3] * a[1][3]) + row[6] * a[2][3]);
   }
   return 0x1p-50 * (size / std::abs(determinant)) + 0x1p-49;
 }
@@ -51,7 +51,8 @@ float float_at_most(double x) {
 }  // namespace
 
 Instance::Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_)
-    : geometry(geometry_), mask(mask_), transform(transform_), inverse{}, doubt(invert(transform_, inverse)) {
+    : PlacedTree{}, transform(transform_), doubt(invert(transform_, inverse)) {
+  geometry = geometry_, mask = mask_;
   const Transform identity;
   is_identity = std::memcmp(&transform, &identity, sizeof identity) == 0;
 }
@@ -69,7 +70,7 @@ InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack)
   for (int i = 0; i < 3; ++i) {
     double sum = 0.0, moved = 0.0;
     for (int j = 0; j < 3; ++j) {
-      const double r = std::abs(instance.inverse[4 * i + j]);
+      const double r = std::abs(instance.inverse[3 * j + i]);
       sum += r, moved += r * std::abs(static_cast<double>(instance.transform.row[j][3]));
     }
     reach = std::max(reach, sum), origin = std::max(origin, moved);

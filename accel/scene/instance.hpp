@@ -3,6 +3,8 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../dispatch/table/instances.hpp"
+
 namespace raylanes {
 
 // The place of an instance in its scene: added since the last update(); in the common tree; waiting until enough others
@@ -13,13 +15,9 @@ constexpr Standing left(Standing standing) {
   return standing == Standing::added ? Standing::added : Standing::apart;
 }
 
-struct Instance {
-  std::uint32_t geometry;
-  std::uint32_t mask;
+struct Instance : PlacedTree {
   Transform transform;
-  double inverse[12];  // rows of four: to the part's space
   double doubt;  // by which share the inverse may be wrong; negative: nothing is hit, there is no inverse
-  bool is_identity;
   Standing standing = Standing::added;
 
   Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -59,6 +60,27 @@ const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
   const bool is_quick = scene.is_current && scene.tops.empty() && !QuietFloats::are_wanted();
   return is_quick ? scene.seen_common(mask) : nullptr;
 }
+// Whether a call with one ray by the exact test may go through all trees by kernels: instances consist of triangles.
+bool is_walked(const SceneParts& scene) {
+  const auto has_triangles = [](const TopLevel& top) { return top.walked.entries != nullptr; };
+  return scene.is_current && std::ranges::all_of(scene.tops, has_triangles) && !QuietFloats::are_wanted();
+}
+SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
+  const TraversalKernels& kernels = kernels_of(path).traversal;
+  SceneHit hit;
+  if (const CommonTree* const tree = scene.seen_common(mask))
+    hit = kernels.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+  for (const TopLevel& top : scene.tops) kernels.closest_of_instances(top.walked, ray, mask, hit);
+  return hit;
+}
+bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
+                     std::uint32_t mask) {
+  const CommonTree* const tree = scene.seen_common(mask);
+  return (tree != nullptr && row.any(*tree->view, ray)) ||
+         std::ranges::any_of(scene.tops, [&](const TopLevel& top) {
+           return kernels_of(path).traversal.any_of_instances(top.walked, ray, mask);
+         });
+}
 
 // The same for a call that may skip a triangle: the row, and that triangle in the tree. A row of null: another way.
 struct CallOfOne {
@@ -86,19 +108,19 @@ void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitVi
 }
 
 SceneHit Scene::closest(const Ray& ray) const {
-  const CommonTree* const tree = quick_tree(parts(), ~0u);
-  if (tree == nullptr) [[unlikely]]
-    return closest_by_options(ray, {}, ~0u);
-  return kernels_of(path_in_use()).traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+  if (const CommonTree* const tree = quick_tree(parts(), ~0u)) [[likely]]
+    return kernels_of(path_in_use()).traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+  return is_walked(parts()) ? walked_closest(parts(), path_in_use(), ray, ~0u)
+                            : closest_by_options(ray, {}, ~0u);
 }
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   const CommonTree* const tree = quick_tree(parts(), mask);
   if (const CallOfOne call(tree, options); call.row != nullptr)
     return tree->numbers().owners.spread(call.row->closest(*tree->view, ray, Facing::any, call.skipped));
-  if (tree == nullptr || options.test != TriangleTest::exact || usual_row(options) == nullptr)
-    return closest_by_options(ray, options, mask);
-  return kernels_of(checked_path(options.path))
-      .traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+  const bool is_usual =
+      options.test == TriangleTest::exact && is_walked(parts()) && usual_row(options) != nullptr;
+  return is_usual ? walked_closest(parts(), checked_path(options.path), ray, mask)
+                  : closest_by_options(ray, options, mask);
 }
 SceneHit Scene::closest_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
@@ -112,15 +134,19 @@ SceneHit Scene::closest_by_options(const Ray& ray, const TraceOptions& options, 
   return hit;
 }
 bool Scene::occluded(const Ray& ray) const {
-  const CommonTree* const tree = quick_tree(parts(), ~0u);
-  return tree != nullptr ? default_row().any(*tree->view, ray) : occluded_by_options(ray, {}, ~0u);
+  if (const CommonTree* const tree = quick_tree(parts(), ~0u)) [[likely]]
+    return default_row().any(*tree->view, ray);
+  return is_walked(parts()) ? walked_occluded(parts(), path_in_use(), default_row(), ray, ~0u)
+                            : occluded_by_options(ray, {}, ~0u);
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   const CommonTree* const tree = quick_tree(parts(), mask);
   if (const CallOfOne call(tree, options); call.row != nullptr)
     return call.row->any(*tree->view, ray, Facing::any, call.skipped);
-  const CallRow* const row = tree != nullptr ? usual_row(options) : nullptr;
-  return row != nullptr ? row->any(*tree->view, ray) : occluded_by_options(ray, options, mask);
+  const bool may_be = tree != nullptr || (options.test == TriangleTest::exact && is_walked(parts()));
+  const CallRow* const row = may_be ? usual_row(options) : nullptr;
+  return row != nullptr ? walked_occluded(parts(), checked_path(options.path), *row, ray, mask)
+                        : occluded_by_options(ray, options, mask);
 }
 bool Scene::occluded_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
@@ -165,7 +191,7 @@ Box Scene::bounds() const noexcept {
 }
 std::size_t Scene::bytes() const noexcept {
   std::size_t bytes = parts().instances.size() * sizeof(Instance);
-  for (const TopLevel& top : parts().tops) bytes += top.tree.bytes();
+  for (const TopLevel& top : parts().tops) bytes += top.bytes();
   return parts().common != nullptr ? bytes + parts().common->bytes() : bytes;
 }
 SceneReport Scene::report() const noexcept {

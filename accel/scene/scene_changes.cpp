@@ -6,37 +6,6 @@
 namespace raylanes {
 namespace {
 
-// Instances whose share is at most that, a band after the other: one ill-conditioned transform would pad the boxes of
-// all instances of its tree. A rotation's share is 2^-20; 2^-12 adds a box test for few rays.
-constexpr float largest_shares[] = {0x1p-12f, 0x1p-6f, std::numeric_limits<float>::max()};
-
-std::vector<TopLevel> tops_over(std::span<const InstanceBounds> all) {
-  std::vector<TopLevel> tops;
-  std::vector<Box> boxes(all.size());
-  float least = -1.0f;
-  for (const float most : largest_shares) {
-    TopLevel top;
-    float share = 0.0f;
-    bool has_any = false;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const InstanceBounds& bounds = all[i];
-      const bool is_in = bounds.share > least && bounds.share <= most && is_visited(bounds.box);
-      boxes[i] = is_in ? bounds.box : empty_box;
-      if (!is_in) continue;
-      has_any = true;
-      share = std::max(share, bounds.share);
-      top.rounded.share = std::max(top.rounded.share, bounds.rounded.share);
-      top.rounded.distance = std::max(top.rounded.distance, bounds.rounded.distance);
-    }
-    least = most;
-    if (!has_any) continue;
-    top.tree = build_box_tree("scene", boxes, {});
-    top.tree.slack = share;
-    tops.push_back(std::move(top));
-  }
-  return tops;
-}
-
 std::vector<InstanceBounds> bounds_of_instances(const SceneParts& scene) {
   std::vector<InstanceBounds> bounds;
   bounds.reserve(scene.instances.size());
@@ -62,6 +31,7 @@ SceneParts& Scene::changed() {
 Scene::Scene(const Scene& other) : parts_(std::make_unique<SceneParts>(other.parts())) {
   for (const auto& geometry : parts_->geometries) geometry->is_shared = true;
   if (parts_->common != nullptr) parts_->common->is_shared = true;
+  parts_->set_tops(std::move(parts_->tops));
 }
 Scene& Scene::operator=(const Scene& other) {
   return *this = Scene(other);
@@ -104,7 +74,7 @@ void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
   Instance& masked = at("instance", parts.instances, instance);
   if (masked.mask == mask) return;
   if (parts.is_current && parts.traces_common && parts.common->has(instance)) {
-    parts.tops = tops_over(bounds_of_instances(parts));
+    parts.set_tops(tops_over(parts.instances, bounds_of_instances(parts)));
     parts.traces_common = false;
   }
   masked.mask = mask, masked.standing = left(masked.standing);
@@ -133,7 +103,8 @@ void Scene::update(int threads) {
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (is_visited(bounds[i].box))
       parts.geometries[parts.instances[i].geometry]->triangles();  // is built now
-  parts.tops = tops_over(bounds);
+  parts.set_trees();
+  parts.set_tops(tops_over(parts.instances, bounds));
   common.commit(parts);
   parts.traces_common = parts.common != nullptr;
   parts.is_current = true;

@@ -11,9 +11,14 @@ namespace raylanes {
 
 // A tree over instances that need about the same padding.
 struct TopLevel {
-  BoundedTreeArrays tree;  // its slack is what exact tests need
-  BoxPadding rounded;      // what tests whose numbers are rounded need as well
+  BoundedTreeArrays tree;              // its slack is what exact tests need
+  BoxPadding rounded;                  // what tests whose numbers are rounded need as well
+  std::vector<InstanceEntry> entries;  // what kernels walk; empty: not all instances consist of triangles
+  InstancesView walked = {};           // of the scene that has it
+
+  std::size_t bytes() const { return tree.bytes() + entries.size() * sizeof(InstanceEntry); }
 };
+std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> bounds);
 
 // An element of a list by its number.
 template <class List>
@@ -53,6 +58,10 @@ struct SceneParts {
     return traces_common && (common->mask & of_mask) != 0 ? common.get() : nullptr;
   }
 
+  // Sets the trees of instances whose geometry has one.
+  void set_trees() noexcept;
+  // Sets tops and their views of this scene.
+  void set_tops(std::vector<TopLevel> made) noexcept;
   std::uint32_t add(std::shared_ptr<Geometry> geometry) {
     const std::uint32_t number = next_number("geometries", geometries);
     is_changed.reserve(number + std::size_t{1});

@@ -101,8 +101,8 @@ struct QueryKernels {
 struct AllQueryKernels {
   QueryKernels plain, counted;  // counted: null where the build was asked for no counters
   // Some rays, all or those numbered, in another space: out[i] has the origin map·(x, y, z, 1) and the direction
-  // map·(x, y, z, 0), rows of four, in doubles from left to right, each rounded once to float; a direction below 2^-126
-  // becomes zero, so that the ray hits nothing. tmin and tmax stay.
+  // map·(x, y, z, 0), columns of three, in doubles from left to right, each rounded once to float; a direction below
+  // 2^-126 becomes zero, so that the ray hits nothing. tmin and tmax stay.
   void (*map_rays)(const Ray* rays, const std::uint32_t* numbers, std::size_t size, const double* map,
                    Ray* out);
 };

@@ -1,12 +1,12 @@
 // Questions beyond the nearest hit, of one path: compiled once per path with its flags and back end; the table is the
 // only symbol that leaves the object.
 #include "../traverse/fused/calls.hpp"
+#include "../traverse/transform.hpp"
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
 #include "hit_lists.hpp"
 #include "list_streams.hpp"
 #include "next_hit.hpp"
-#include "transform.hpp"
 #include "visit_packets.hpp"
 
 namespace raylanes {

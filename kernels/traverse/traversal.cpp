@@ -2,7 +2,7 @@
 // leaves the object. The build compiles this text a second time for those with counters, whose table is `counted`, so
 // that those without stay as they are.
 #include "../triangle/all_tests.hpp"
-#include "fused/calls.hpp"
+#include "instances.hpp"
 #include "packet/packet_leaves.hpp"
 #include "single.hpp"
 #include "streams.hpp"
@@ -49,6 +49,8 @@ constexpr TraversalKernels all_modes(Put put) {
     kernels.call = rows_of<CallKernels>(TreeTests(), CallRows());
     kernels.nearest_triangle = nearest_triangle;
     kernels.closest_in_scene = closest_in_scene;
+    kernels.closest_of_instances = closest_of_instances;
+    kernels.any_of_instances = any_of_instances;
   }
   return kernels;
 }

@@ -1,5 +1,7 @@
 // The rows of traversals: of BVHs, with counters or without, and of k-d trees.
 #include "../../accel/layout/kdtree_arrays.hpp"
+#include "../../accel/scene/bounded_tree_arrays.hpp"
+#include "../../dispatch/table/instances.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "../../dispatch/table/traversal.hpp"
@@ -144,10 +146,63 @@ void check_hits_in_scenes(EveryRow& every, const TraversalKernels& rows, const T
   EXPECT_GT(found, 3u);
 }
 
+// Three instances, one of them from the children of its root on, have the hits of their tree. A hit that is given stays
+// if it comes first.
+void check_instances(EveryRow& every, const TraversalKernels& rows, const TraversalKernels& of_scalar) {
+  const bool any = every.offers(rows.any_of_instances, of_scalar.any_of_instances);
+  if (!every.offers(rows.closest_of_instances, of_scalar.closest_of_instances) || !any) return;
+  const Trees trees;
+  PlacedTree placed[3]{};
+  std::vector<Box> boxes;
+  std::vector<InstanceEntry> entries;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    PlacedTree& at = placed[i];
+    at.tree = trees.views, at.geometry = 7 - i, at.mask = 1u << i, at.is_identity = i == 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) at.inverse[4 * axis] = 1;
+    at.inverse[9] = -0.125 * i;
+    Box box = trees.view.bounds;
+    box.lo[0] -= 1, box.hi[0] += 1;  // any that has the instance
+    const WideNode& root = trees.view.nodes[trees.view.root];
+    for (std::size_t child = 0; child < tree_width; ++child) {
+      if (i < 2 ? child > 0 : (root.occupied >> child & 1) == 0) continue;
+      boxes.push_back(box), entries.push_back({i, i < 2 ? trees.view.root : root.child[child]});
+    }
+  }
+  const BoundedTreeArrays top = build_box_tree("every row", boxes, {});
+  std::vector<InstanceEntry> in_order;
+  for (const std::uint32_t i : top.order) in_order.push_back(entries[i]);
+  const InstancesView view{top.view(), in_order.data(), placed, sizeof(PlacedTree)};
+  const CallRow& call = rows.call.row[static_cast<std::size_t>(TriangleTest::exact)][0];
+  std::size_t found = 0;
+  for (const Ray& ray : some_rays())
+    for (const std::uint32_t mask : {7u, 6u, 4u, 0u}) {
+      SceneHit expected;
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        Ray mapped = ray;
+        mapped.origin[0] -= 0.125f * static_cast<float>(i);
+        const Hit hit = (mask >> i & 1) != 0 ? call.closest(trees.view, mapped) : Hit();
+        if (hit.t < expected.t) expected = {hit.t, hit.u, hit.v, hit.primitive, 7 - i, i};
+      }
+      SceneHit hit, of_scalar_hit, nearer{expected.t, 2, 2, 0, 0, 0};
+      rows.closest_of_instances(view, ray, mask, hit);
+      of_scalar.closest_of_instances(view, ray, mask, of_scalar_hit);
+      EXPECT_TRUE(same_bytes(hit, expected) && same_bytes(of_scalar_hit, expected));
+      EXPECT_EQ(rows.any_of_instances(view, ray, mask), static_cast<bool>(expected));
+      EXPECT_EQ(of_scalar.any_of_instances(view, ray, mask), static_cast<bool>(expected));
+      if (!expected) continue;
+      ++found;
+      const SceneHit before = nearer;
+      rows.closest_of_instances(view, ray, mask, nearer);
+      EXPECT_TRUE(same_bytes(nearer, before));
+    }
+  EXPECT_GT(found, 9u);
+}
+
 TEST_P(EveryRow, of_traversal) {
   check_traversal(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal, false);
   check_nearest_triangles(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
   check_hits_in_scenes(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
+  check_instances(*this, kernels_of(path()).traversal, kernels_of(scalar()).traversal);
   expect_all_called(kernels_of(path()).traversal);
 }
 TEST_P(EveryRow, of_counted_traversal) {

@@ -36,10 +36,17 @@ void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vecto
   scene.closest(rays, hits, options, mask);
   scene.occluded(rays, occluded, options, mask);
   fence.expect_intact("hits"), byte_fence.expect_intact("occluded");
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!same_bytes(hits[i], expected[i]) || occluded[i] != (expected[i] ? 1 : 0))
+  const TraceOptions of_one{.path = options.path, .facing = options.facing};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const bool is_hit = static_cast<bool>(expected[i]);
+    if (!same_bytes(hits[i], expected[i]) || occluded[i] != (is_hit ? 1 : 0))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": " + text(hits[i]) + ", not " +
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
+    const SceneHit alone = scene.closest(rays[i], of_one, mask);
+    if (!same_bytes(alone, expected[i]) || scene.occluded(rays[i], of_one, mask) != is_hit)
+      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " alone: " + text(alone) +
+           ", not " + text(expected[i]));
+  }
 }
 
 // So many as packets want, from the origin of one.

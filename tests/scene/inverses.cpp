@@ -45,12 +45,12 @@ void expect_inverse(const Transform& transform, int& tested) {
     for (int j = 0; j < 3; ++j) {
       // A cofactor is one rounding off, as products of floats are exact; the determinant and the quotient are within
       // the share that the instance names.
-      const mpq_class error = abs(mpq_class(instance.inverse[4 * i + j]) - exact[i][j]),
+      const mpq_class error = abs(mpq_class(instance.inverse[3 * j + i]) - exact[i][j]),
                       bound = mpq_class(instance.doubt) * abs(exact[i][j]);
       EXPECT_LE(error, bound) << i << ", " << j;
       terms += abs(exact[i][j] * mpq_class(transform.row[j][3]));
     }
-    const mpq_class error = abs(mpq_class(instance.inverse[4 * i + 3]) - exact[i][3]);
+    const mpq_class error = abs(mpq_class(instance.inverse[9 + i]) - exact[i][3]);
     const mpq_class bound = mpq_class(instance.doubt + 0x1p-50) * terms;
     EXPECT_LE(error, bound) << i;
   }
@@ -110,7 +110,7 @@ TEST(Instance, is_inverted_as_well_as_it_says) {
         mpq_class sum = row == column ? -1 : 0, size = 0;
         for (std::size_t k = 0; k < 3; ++k) {
           const mpq_class product =
-              mpq_class(instance.inverse[4 * row + k]) * mpq_class(transform.row[k][column]);
+              mpq_class(instance.inverse[3 * k + row]) * mpq_class(transform.row[k][column]);
           sum += product, size += abs(product);
         }
         ASSERT_LE(abs(sum), size * mpq_class(instance.doubt)) << i;

@@ -20,12 +20,12 @@ inline Ray mapped_ray(const Ray& ray, const Instance& instance) {
   Ray mapped = ray;
   float largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double* const row = instance.inverse + 4 * i;
+    const double* const row = instance.inverse + i;
     const auto linear = [&](const Float3& v) {
-      return (row[0] * static_cast<double>(v[0]) + row[1] * static_cast<double>(v[1])) +
-             row[2] * static_cast<double>(v[2]);
+      return (row[0] * static_cast<double>(v[0]) + row[3] * static_cast<double>(v[1])) +
+             row[6] * static_cast<double>(v[2]);
     };
-    mapped.origin[i] = static_cast<float>(linear(ray.origin) + row[3]);
+    mapped.origin[i] = static_cast<float>(linear(ray.origin) + row[9]);
     mapped.direction[i] = static_cast<float>(linear(ray.direction));
     largest = std::max(largest, std::abs(mapped.direction[i]));
   }

@@ -131,14 +131,14 @@ class WaitingAsStored {
 template <bool only_decides, std::size_t room>
 using WaitingOf = std::conditional_t<only_decides, WaitingAsStored<room>, WaitingNearest<room>>;
 
-// From the tree's root to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
+// From a node or leaf to the leaves that the query wants to see. leaves.visit(leaf, query) is true where the search
 // ends. `boxes` says for each child where it is entered, not before +0, and where it is left. Leaves may say how many
 // of those that wait are asked for ahead of time, and where a leaf begins. Returns whether a leaf has ended the search.
 template <class Boxes, class Leaves, class Query>
-inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
+inline bool walk_fused_from(const TreeView& tree, TreeReference next, const Boxes& boxes,
+                            const Leaves& leaves, Query& query) {
   WaitingOf<Query::only_decides, max_stack> waiting;
   std::size_t size = 0;
-  TreeReference next = tree.root;
   float end = query.box_tmax();
   do {
     const NodeFloats tmax(end);
@@ -158,6 +158,10 @@ inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& l
     if constexpr (!Query::only_decides) end = query.box_tmax();
   } while (waiting.pop(next, end, size));
   return false;
+}
+template <class Boxes, class Leaves, class Query>
+inline bool walk_fused(const TreeView& tree, const Boxes& boxes, const Leaves& leaves, Query& query) {
+  return walk_fused_from(tree, tree.root, boxes, leaves, query);
 }
 
 }  // namespace

@@ -98,6 +98,8 @@ MUTANTS = [
         ('instance: bounds without padding', 'float_below(float_or_infinity(lo - pad))',
          'float_below(float_or_infinity(lo + 0 * pad))'),
         ('instance: singular transforms have inverses', '0x1p-48 * size', '0x1p-99 * size')),
+    *rows_of('accel/scene/scene_changes.cpp', 'test_scenes',
+        ('scene: copies walk the instances of the original', 'parts_->set_tops(std::move(parts_->tops));', '')),
     *rows_of('accel/scene/triangle_geometry.cpp', 'test_scenes',
         ('scene: meshes that nobody checked', 'require_valid_mesh(vertices, triangles, options.threads);', ';'),
         ('scene: meshes refitted to others',

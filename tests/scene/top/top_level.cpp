@@ -4,9 +4,9 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../queries/query_trees.hpp"
-#include "../support/same_bytes.hpp"
-#include "expect_scene.hpp"
+#include "../../queries/query_trees.hpp"
+#include "../../support/same_bytes.hpp"
+#include "../expect_scene.hpp"
 
 namespace raylanes::testing {
 namespace {

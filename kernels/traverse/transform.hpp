@@ -1,19 +1,20 @@
 // Rays in another space, by doubles, rounded once.
 #pragma once
 
+#include "../exact/edge_bounds.hpp"
 #include "../ray/ray_columns.hpp"
-#include "../simd/vocabulary.hpp"
 
 namespace raylanes {
 namespace {
 
-// Half the lanes of a row of the map: the products of floats and doubles, each rounded, added from left to right.
+// Half the lanes of a row of the map, whose columns are stored one after the other: the products of floats and doubles,
+// each rounded, added from left to right.
 template <int half, int N>
 inline auto mapped_half(const double* row, const Vec3<Floats<N>>& p, bool is_point) {
   using V = decltype(to_doubles<half>(p.x));
-  V linear = (V(row[0]) * to_doubles<half>(p.x) + V(row[1]) * to_doubles<half>(p.y)) +
-             V(row[2]) * to_doubles<half>(p.z);
-  return is_point ? linear + V(row[3]) : linear;
+  V linear = (V(row[0]) * to_doubles<half>(p.x) + V(row[3]) * to_doubles<half>(p.y)) +
+             V(row[6]) * to_doubles<half>(p.z);
+  return is_point ? linear + V(row[9]) : linear;
 }
 template <int N>
 inline Floats<N> mapped(const double* row, const Vec3<Floats<N>>& p, bool is_point) {
@@ -31,8 +32,8 @@ inline void map_register(const void* const (&from)[native_lanes], const double* 
   load_rows(from, c);
   Vec3<V> origin(c[0], c[1], c[2]), direction(c[4], c[5], c[6]);
   for (int axis = 0; axis < 3; ++axis) {
-    c[axis] = mapped(map + 4 * axis, origin, true);
-    c[4 + axis] = mapped(map + 4 * axis, direction, false);
+    c[axis] = mapped(map + axis, origin, true);
+    c[4 + axis] = mapped(map + axis, direction, false);
   }
   // A direction of subnormals has lost its digits: it is none.
   auto is_none = largest_magnitude(c[4], c[5], c[6]) < V(0x1p-126f);
@@ -41,8 +42,8 @@ inline void map_register(const void* const (&from)[native_lanes], const double* 
 }
 
 // As QueryKernels has it.
-[[gnu::noinline]] void map_rays(const Ray* rays, const std::uint32_t* numbers, std::size_t size,
-                                const double* map, Ray* out) {
+[[gnu::noinline, maybe_unused]] void map_rays(const Ray* rays, const std::uint32_t* numbers, std::size_t size,
+                                              const double* map, Ray* out) {
   const void* from[native_lanes];
   void* to[native_lanes];
   std::size_t first = 0;
