@@ -40,7 +40,7 @@ class Geometry {
   virtual float slack() const { return 0.0f; }
   // Its tree of triangles, which a mesh builds at the first call; null if it has no triangles. Any thread may call it.
   virtual const Bvh* triangles() const { return nullptr; }
-  // What a mesh knows without a tree: the number of triangles, their corners as nine numbers each, and how it is
+  // These are known without a tree: the number of triangles, their corners as nine numbers each, and how a tree is
   // built. Corners of triangles that nothing hits may stay as they are.
   virtual std::size_t mesh_triangles() const { return 0; }
   virtual void put_corners(float*) const {}

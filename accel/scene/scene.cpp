@@ -196,7 +196,9 @@ std::size_t Scene::bytes() const noexcept {
 }
 SceneReport Scene::report() const noexcept {
   SceneReport report;
-  for (const auto& geometry : parts().geometries) report.meshes_without_tree += geometry->has_tree() ? 0 : 1;
+  for (const auto& geometry : parts().geometries)
+    report.mesh_triangles += geometry->mesh_triangles(),
+        report.meshes_without_tree += geometry->has_tree() ? 0 : 1;
   if (parts().common == nullptr) return report;
   const CommonTree& common = *parts().common;
   report.common_bytes = common.bytes();

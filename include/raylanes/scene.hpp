@@ -35,6 +35,7 @@ struct SceneReport {
   std::size_t common_instances = 0;  ///< instances in the common tree
   std::size_t common_triangles = 0;  ///< their triangles
   std::size_t common_bytes = 0;      ///< the memory of the common tree, besides the trees of geometries
+  std::size_t mesh_triangles = 0;    ///< the triangles of all geometries
   std::size_t meshes_without_tree =
       0;  ///< geometries added as meshes that needed no tree of their own so far
 };

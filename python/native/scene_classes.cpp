@@ -87,6 +87,8 @@ py::dict report_of_scene(const SharedScene& shared) {
   all["common_instances"] = to_python(report.common_instances);
   all["common_triangles"] = to_python(report.common_triangles);
   all["common_bytes"] = to_python(report.common_bytes);
+  all["mesh_triangles"] = to_python(report.mesh_triangles);
+  all["meshes_without_tree"] = to_python(report.meshes_without_tree);
   return all;
 }
 
@@ -124,6 +126,7 @@ void bind_scenes(py::module_& module) {
   def_constructor(scene, empty_scene);
   def_constructor(scene, made_from<SharedScene>);
   scene.def("add", add)
+      .def("add_mesh", add_mesh)
       .def("replace", replace)
       .def("refit", refit_geometry)
       .def("place", place)

@@ -73,6 +73,18 @@ inline std::uint32_t add(SharedScene& shared, const py::object& part) {
   return number;
 }
 
+inline std::uint32_t add_mesh(SharedScene& shared, const py::array& vertices, const py::array& faces,
+                              int threads) {
+  const auto of_vertices = vertices_of<float>(vertices);
+  const IndexView of_faces = indices_of(faces);
+  BuildOptions options;
+  options.threads = usable_threads(threads);
+  std::uint32_t number = 0;
+  change(shared, is_quick(of_faces.count / 64),
+         [&](Scene& scene) { number = scene.add(of_vertices, of_faces, options); });
+  return number;
+}
+
 inline void replace(SharedScene& shared, std::uint32_t geometry, const py::object& part) {
   with_part(part, [&](const auto& tree) {
     change(shared, true, [&](Scene& scene) { scene.replace(geometry, tree); });
@@ -142,11 +154,8 @@ inline void set_moving(SharedScene& shared, const py::array& instances, bool mov
 
 // Whether an update ends so soon, even if it builds a tree over all triangles.
 inline bool is_quick_update(const Scene& scene) {
-  constexpr std::size_t most = 1 << 19;
-  std::size_t bytes = 0;
-  for (std::uint32_t i = 0; i < scene.geometry_count() && bytes <= most; ++i)
-    if (const Bvh* const tree = scene.tree(i)) bytes += tree->bytes();
-  return is_quick(scene.instance_count()) && (bytes <= most || is_only_thread());
+  constexpr std::size_t most = 1 << 13;  // triangles
+  return is_quick(scene.instance_count()) && (scene.report().mesh_triangles <= most || is_only_thread());
 }
 inline void update(SharedScene& shared, int threads) {
   threads = usable_threads(threads);

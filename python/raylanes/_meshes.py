@@ -14,6 +14,11 @@ def parts_of(vertices, faces):
     return parts
 
 
+def is_mesh(mesh):
+    """Whether an object has vertices and faces."""
+    return _parts_of_mesh(mesh) is not None
+
+
 def faces_in(faces):
     """Faces as they are given, or the faces of a mesh."""
     parts = _parts_of_mesh(faces)

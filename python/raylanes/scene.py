@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _native
 from ._arrays import count_of, faces_of, numbers, require_kept, unsigned, vertices_of
-from ._meshes import parts_of
+from ._meshes import is_mesh, parts_of
 from ._scalars import count, flag, threads_of
 from ._scene_queries import EVERY_BIT, SceneQueries
 from ._stored import Stored
@@ -58,13 +58,21 @@ class Scene(SceneQueries, Stored):
     def __init__(self):
         self._tree = _native.Scene()
 
-    def add(self, tree):
-        """Add a tree, whose memory the scene shares.
+    def add(self, tree, faces=None, *, threads=0):
+        """Add a tree, whose memory the scene shares, or a mesh, which it copies.
+
+        A mesh has no tree of its own until one is needed: instances that stand where they were made are traced as one
+        tree.
 
         Parameters
         ----------
-        tree : Bvh of float32, or SphereTree
-            The tree, which may be in any number of scenes.
+        tree : Bvh of float32, SphereTree, array of float of shape (n, 3), or a mesh
+            The tree, which may be in any number of scenes; or the vertices of a mesh, as in Bvh. Numbers that float32
+            does not hold raise ValueError.
+        faces : array of int, shape (m, 3), optional
+            The triangles of a mesh, as in Bvh.
+        threads : int, default 0
+            At most so many threads to build the tree of a mesh; 0: all cores.
 
         Returns
         -------
@@ -74,14 +82,19 @@ class Scene(SceneQueries, Stored):
         Raises
         ------
         ValueError
-            If the tree is a Bvh of float64.
+            If the tree is a Bvh of float64, or Bvh refuses the mesh.
 
         Examples
         --------
-        >>> raylanes.Scene().add(raylanes.SphereTree([[0, 0, 0]], 1))
+        >>> scene = raylanes.Scene()
+        >>> scene.add(raylanes.SphereTree([[0, 0, 0]], 1))
         0
+        >>> scene.add([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+        1
         """
-        return self._tree.add(_part_of(tree))
+        if faces is None and (isinstance(tree, (Bvh, SphereTree)) or not is_mesh(tree)):
+            return self._tree.add(_part_of(tree))
+        return self._tree.add_mesh(*_mesh_of_floats(tree, faces), threads_of(threads))
 
     def replace(self, geometry, tree):
         """Replace a geometry by another tree; its instances stay where they are. update() must follow.
@@ -132,11 +145,7 @@ class Scene(SceneQueries, Stored):
         ValueError
             If it is of spheres, or Bvh.refit() would raise it.
         """
-        vertices, faces = parts_of(vertices, faces)
-        faces, given = faces_of(faces), numbers("vertices", vertices)
-        rows = vertices_of("vertices", given, np.float32)
-        require_kept("vertices", given, rows, "a scene has float32: give it vertices of float32")
-        self._tree.refit(_index("geometry", geometry), rows, faces, threads_of(threads))
+        self._tree.refit(_index("geometry", geometry), *_mesh_of_floats(vertices, faces), threads_of(threads))
 
     def place(self, geometry, transform=None, *, mask=EVERY_BIT):
         """Place a geometry once or many times. update() must follow.
@@ -278,18 +287,19 @@ class Scene(SceneQueries, Stored):
         self._tree.update(threads_of(threads))
 
     def report(self):
-        """Describe the common tree of meshes that stand where they were made.
+        """Describe how the scene is traced: the common tree of meshes that stand where they were made.
 
         Returns
         -------
         dict
             common_instances: instances in it, none while it is out of use after set_mask(). common_triangles: their
-            triangles. common_bytes: its memory, besides that of the geometries' trees.
+            triangles. common_bytes: its memory, besides that of the geometries' trees. mesh_triangles: triangles of all
+            geometries. meshes_without_tree: meshes that needed no tree of their own so far.
 
         Examples
         --------
         >>> sorted(scene.report())
-        ['common_bytes', 'common_instances', 'common_triangles']
+        ['common_bytes', 'common_instances', 'common_triangles', 'mesh_triangles', 'meshes_without_tree']
         """
         return self._tree.report()
 
@@ -318,10 +328,19 @@ class Scene(SceneQueries, Stored):
                 f"instances, {self.nbytes} bytes without geometries>")
 
 
+def _mesh_of_floats(vertices, faces):
+    """The vertices, of float32, and the faces of a mesh."""
+    vertices, faces = parts_of(vertices, faces)
+    faces, given = faces_of(faces), numbers("vertices", vertices)
+    rows = vertices_of("vertices", given, np.float32)
+    require_kept("vertices", given, rows, "a scene has float32: give it vertices of float32")
+    return rows, faces
+
+
 def _part_of(tree):
     """The native tree of a geometry."""
     if not isinstance(tree, (Bvh, SphereTree)):
-        raise TypeError(f"tree: a Bvh or a SphereTree is needed, not {type(tree).__name__}")
+        raise TypeError(f"tree: a Bvh, a SphereTree or a mesh is needed, not {type(tree).__name__}")
     if isinstance(tree._tree, _native.BvhD):
         raise ValueError("tree: a scene has float32, this Bvh has float64; give it a Bvh made with dtype=numpy.float32")
     return tree._tree

@@ -4,6 +4,7 @@ import copy
 import io
 import pickle
 import re
+import types
 
 import numpy as np
 import pytest
@@ -109,9 +110,9 @@ def test_what_is_refused_changes_nothing():
              (ValueError, "^tree: a scene has float32, this Bvh has float64; give it a Bvh made with "
                           "dtype=numpy.float32$", lambda: scene.add(doubles)),
              (ValueError, "^tree: a scene has float32", lambda: scene.replace(0, doubles)),
-             (TypeError, "^tree: a Bvh or a SphereTree is needed, not KdTree$",
+             (TypeError, "^tree: a Bvh, a SphereTree or a mesh is needed, not KdTree$",
               lambda: scene.add(cube(raylanes.KdTree))),
-             (TypeError, "^tree: a Bvh or a SphereTree is needed, not Scene$", lambda: scene.add(scene)),
+             (TypeError, "^tree: a Bvh, a SphereTree or a mesh is needed, not Scene$", lambda: scene.add(scene)),
              (ValueError, "triangles", lambda: scene.refit(0, cube_vertices, cube_faces[1:])),
              (ValueError, "^vertices: float32 does not hold these float64 numbers; a scene has float32",
               lambda: scene.refit(0, cube_vertices.astype(float) / 3, cube_faces)),
@@ -145,9 +146,33 @@ def test_meshes_that_stand_have_a_tree_in_common():
     assert scene.report()["common_instances"] == 6 and scene.closest(rays).tobytes() == before
     scene.set_moving(range(8))
     scene.update()
-    assert set(scene.report().values()) == {0} and scene.closest(rays).tobytes() == before
+    assert scene.report()["common_bytes"] == scene.report()["common_instances"] == 0
+    assert scene.report()["mesh_triangles"] == 8 * len(cube_faces) and scene.closest(rays).tobytes() == before
     with pytest.raises(IndexError, match="there is no instance 8"):
         scene.set_moving([0, 8], False)
+
+
+def test_meshes_need_no_tree_of_their_own():
+    scene, of_trees = raylanes.Scene(), raylanes.Scene()
+    for k in range(6):
+        scene.place(scene.add(cube_vertices + np.float32(4 * k), cube_faces))
+        of_trees.place(of_trees.add(raylanes.Bvh(cube_vertices + np.float32(4 * k), cube_faces)))
+    scene.update(), of_trees.update()
+    report = scene.report()
+    assert report["common_instances"] == report["meshes_without_tree"] == 6
+    assert of_trees.report()["meshes_without_tree"] == 0
+    for _ in range(2):
+        assert scene.closest(rays).tobytes() == of_trees.closest(rays).tobytes()
+        scene.set_moving(range(6)), scene.update()
+    assert scene.report()["meshes_without_tree"] == 0
+    assert scene.add(types.SimpleNamespace(vertices=cube_vertices, faces=cube_faces)) == 6
+    wrong = [(ValueError, "^vertices: ", lambda: scene.add([[0.1, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])),
+             (ValueError, "3", lambda: scene.add([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])),
+             (TypeError, "", lambda: scene.add(cube(), cube_faces)), (TypeError, "", lambda: scene.add(None))]
+    for error, sentence, call in wrong:
+        with pytest.raises(error, match=sentence):
+            call()
+    assert scene.geometry_count == 7
 
 
 def test_answers_go_where_they_are_wanted():

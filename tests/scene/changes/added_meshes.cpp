@@ -32,6 +32,7 @@ void expect_cubes(const Scene& scene, std::uint32_t count) {
 TEST(AddedMeshes, have_a_tree_from_when_it_is_needed) {
   Scene scene = cubes(20);
   EXPECT_EQ(scene.report().meshes_without_tree, 20u);
+  EXPECT_EQ(scene.report().mesh_triangles, 20u * 12);
   scene.update();
   EXPECT_EQ(scene.report().common_instances, 20u);
   expect_cubes(scene, 20);
