@@ -11,12 +11,14 @@ namespace raylanes {
 
 // A tree over instances that need about the same padding.
 struct TopLevel {
-  BoundedTreeArrays tree;              // its slack is what exact tests need
-  BoxPadding rounded;                  // what tests whose numbers are rounded need as well
-  std::vector<InstanceEntry> entries;  // what kernels walk; empty: not all instances consist of triangles
-  InstancesView walked = {};           // of the scene that has it
+  BoundedTreeArrays tree;    // its slack is what exact tests need
+  BoxPadding rounded;        // what tests whose numbers are rounded need as well
+  BoundedTreeArrays opened;  // for single rays: over nodes of large instances, too; empty if none is opened
+  std::vector<InstanceEntry>
+      entries;                // in the leaves of `opened`, or else of `tree`; empty: not all are triangles
+  InstancesView walked = {};  // of the scene that has it
 
-  std::size_t bytes() const { return tree.bytes() + entries.size() * sizeof(InstanceEntry); }
+  std::size_t bytes() const { return tree.bytes() + opened.bytes() + entries.size() * sizeof(InstanceEntry); }
 };
 std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> bounds);
 
