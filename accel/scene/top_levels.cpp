@@ -11,8 +11,8 @@ namespace {
 // all instances of its tree. A rotation's share is 2^-20; 2^-12 adds a box test for few rays.
 constexpr float largest_shares[] = {0x1p-12f, 0x1p-6f, std::numeric_limits<float>::max()};
 
-// A node is opened under two conditions. Its box in the scene has more than min_share of the top level's area. The boxes
-// of its children together have less than max_growth times its area, else they overlap as much. Measured.
+// A node is opened under two conditions. Its box in the scene has more than min_share of the top level's area. The
+// boxes of its children together have less than max_growth times its area, else they overlap as much. Measured.
 constexpr double min_share = 1.0 / 25, max_growth = 1.7;
 constexpr std::size_t max_added = 2048;
 
