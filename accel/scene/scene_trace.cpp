@@ -14,6 +14,8 @@ namespace {
 // Rays to an instance spread over its part of the picture. Fewer rays than this make packets with wide frusta, so they
 // are traced as streams or single rays. Measured.
 constexpr std::size_t min_packets = 4096;
+// Fewer rays go through the instances of a leaf as single rays, without copies of rays and hits. Measured.
+constexpr std::size_t min_list = 24;
 
 // Spreads the hits of a tree into hits of the scene, from the front. As words: a hit's two, the second of which ends
 // with the primitive, and one that names the geometry and the instance.
@@ -68,7 +70,8 @@ class SceneTracer {
     if (has_answers) boxes.tmax = rest_of_rays(scratch.take<float>(batch_.size));
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.choice.counters;
-    top_ = &top.tree;
+    top_ = &top;
+    walks_ = top.walked.entries != nullptr && has_only_a_mask();
     query_.queries().visit(padded(top), boxes);
   }
   TreeView padded(const TopLevel& top) const {
@@ -90,6 +93,10 @@ class SceneTracer {
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
   bool skips() const { return query_.skip.first != nullptr; }
+  bool has_only_a_mask() const {
+    return query_.test == TriangleTest::exact && query_.choice.counters == nullptr &&
+           query_.choice.facing == Facing::any && batch_.after == nullptr && !skips();
+  }
 
   // Rays in the space of an instance.
   GeometryBatch batch_of(const Ray* rays, std::size_t size, const detail::RayNumbers& numbers,
@@ -150,8 +157,33 @@ class SceneTracer {
   }
   static void leaf(void* context, const VisitedLeaf& leaf) {
     auto& tracer = *static_cast<SceneTracer*>(context);
+    if (tracer.walks_ && leaf.count < min_list) return tracer.walk(leaf);
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k)
-      tracer.visit(tracer.top_->order[k], leaf);
+      tracer.visit(tracer.top_->tree.order[k], leaf);
+  }
+
+  // Each ray through the instances of a leaf, by the kernel of single rays.
+  void walk(const VisitedLeaf& leaf) const {
+    InstanceEntry entries[tree_width];
+    for (std::uint32_t k = 0; k < leaf.size; ++k) {
+      const std::uint32_t number = top_->tree.order[leaf.first + k];
+      entries[k] = {number, query_.scene.instances[number].tree->root};
+    }
+    InstancesView view = top_->walked;
+    view.entries = entries, view.tree.root = tree_reference({0, leaf.size});
+    const TraversalKernels& kernels = query_.kernels.traversal;
+    for (std::size_t k = 0; k < leaf.count; ++k) {
+      const std::uint32_t number = leaf.rays[k];
+      const Ray& ray = batch_.rays[number];
+      float end = std::numeric_limits<float>::infinity();
+      if (batch_.hits != nullptr) {
+        kernels.closest_of_instances(view, ray, query_.mask, batch_.hits[number]);
+        end = tmax_behind(batch_.hits[number].t);
+      } else if (kernels.any_of_instances(view, ray, query_.mask)) {
+        batch_.occluded[number] = 1, end = -end;
+      }
+      leaf.tmax[k] = std::min(leaf.tmax[k], end);
+    }
   }
 
   void visit(std::uint32_t number, const VisitedLeaf& leaf) const {
@@ -208,7 +240,8 @@ class SceneTracer {
 
   const SceneQuery& query_;
   const SceneBatch& batch_;
-  const BoundedTreeArrays* top_ = nullptr;  // that is visited
+  const TopLevel* top_ = nullptr;  // that is visited
+  bool walks_ = false;             // whether single rays may go through it by kernels
 };
 
 }  // namespace

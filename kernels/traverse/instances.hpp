@@ -206,7 +206,7 @@ template <class Query>
   const float padding = tree.origin_share * largest_of(ray.origin);
 #if defined(__AVX2__) && defined(__FMA__)
   FusedRay nodes;
-  if (nodes.template prepare<InstanceTest>(tree, ray, padding)) [[likely]] {
+  if (refers_to_leaf(tree.root) || nodes.template prepare<InstanceTest>(tree, ray, padding)) [[likely]] {
     walk_fused(tree, nodes, leaves, query);
     return;
   }
