@@ -104,7 +104,12 @@ class ActiveRays {
       if (source_.skip.first == nullptr) return;
       skip = skips_;
       if (skips_ == nullptr) skip = static_cast<const std::uint32_t*>(source_.skip.first) + begin;
-      for (std::size_t k = 0; skips_ != nullptr && k < size; ++k) skips_[k] = source_.skip[indices[k]];
+      if (skips_ == nullptr) return;
+      const PrimitiveView given = source_.skip;
+      if (indices.copied == nullptr)
+        for (std::size_t k = 0; k < size; ++k) skips_[k] = given[begin + k];
+      else
+        for (std::size_t k = 0; k < size; ++k) skips_[k] = given[indices.copied[k]];
     }
   }
   // Returns how many take part.

@@ -194,7 +194,7 @@ void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, 
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
         batch.counters = call.counters, batch.scratch = call.scratch;
-        batch.facing = choice.facing, batch.skip = call.skip;
+        batch.facing = choice.facing, batch.skip = call.skip, batch.chosen = choice.chosen;
         set_answers(batch, call.answers);
         run(tree, choice, batch);
       });
@@ -204,7 +204,7 @@ template void trace(const TreeView&, TraversalChoice, const RaySource&, const Sp
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;
-  batch.facing = choice.facing;
+  batch.facing = choice.facing, batch.chosen = choice.chosen;
   if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch);
   const std::size_t bytes = scratch_bytes(choice, batch.size);
   Scratch scratch(bytes);

@@ -96,8 +96,14 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   const QueryKernels& rows = checked_queries<float>("trace", options);
   const TraversalRow* const single = &rows.chosen_single;
   const TraversalRow* const together = rows.chosen_stream.closest != nullptr ? &rows.chosen_stream : single;
-  TraversalChoice choice{single,       together,         together,      options.mode,
-                         options.hint, options.counters, options.facing};
+  const TraversalRows& packets =
+      kernels_of(checked_path(options.path)).traversal.mode[static_cast<std::size_t>(TraversalMode::packet)];
+  constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
+  const bool counts = options.counters != nullptr;
+  TraversalChoice choice{single,         counts ? together : &packets.row[exact][0],
+                         together,       options.mode,
+                         options.hint,   options.counters,
+                         options.facing, counts ? nullptr : &rows.chosen_call};
   set_what_tells(choice, options);
   return choice;
 }

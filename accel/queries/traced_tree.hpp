@@ -11,8 +11,6 @@
 
 namespace raylanes {
 
-struct ChosenCallRow;
-
 // Which kernels walk a tree.
 enum class TreeKind { bvh, kdtree };
 

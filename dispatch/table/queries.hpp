@@ -71,13 +71,6 @@ struct VisitBatch {
   TraceCounters* counters = nullptr;
 };
 
-// CallRow of the exact test, of triangles of the sides that `facing` names, without the skipped primitive;
-// no_primitive: with all of them.
-struct ChosenCallRow {
-  Hit (*closest)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
-  bool (*any)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
-};
-
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
 // directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are crossings or sides.

@@ -42,6 +42,20 @@ struct TriangleOwners {
 // `closest` none. `any` and `closest` trace the rest as single rays and as rays that share no point.
 enum class SharedApex : std::uint8_t { origin, end, none };
 
+// The nearest hit of a ray so far: its t is within two bounds; leaf_triangle as in nearest_triangle.
+struct NearestSoFar {
+  float t_lo, tmax;
+  std::uint32_t leaf_triangle;
+};
+// One ray in a call of its own by the exact test, of triangles of the sides that `facing` names, without the skipped
+// primitive; no_primitive: with all of them. `nearer` is for a valid ray and a part of a tree that is not empty.
+struct ChosenCallRow {
+  Hit (*closest)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
+  bool (*any)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
+  void (*nearer)(const TreeView& tree, const Ray& ray, NearestSoFar& best, Facing facing,
+                 std::uint32_t skipped);
+};
+
 // A batch of rays and where its answers go: plain data, which can grow without touching a signature. Rays and answers
 // do not overlap.
 template <class T>
@@ -56,10 +70,12 @@ struct TraceBatchOf {
   SharedApex shared_point = SharedApex::origin;
   PointOf<T> shared_end{};
   TraceCounters* counters = nullptr;  // counted rows add to it, the others never look
-  Facing facing = Facing::any;        // only rows of QueryKernels look
+  Facing facing = Facing::any;        // only rows of QueryKernels look, and packets of the exact test
   // And for each ray the primitive that is not there for it; null: none is left out.
   const std::uint32_t* skip = nullptr;
   const HitOf<T>* after = nullptr;  // of `next`: for each ray the hit that it looks behind
+  // For packets of floats: what traces rays that go alone; not null if `facing` or `skip` say something.
+  const ChosenCallRow* chosen = nullptr;
 
   // Some of the rays, with their answers. Inlined always, so that no symbol has a path's instructions.
   [[gnu::always_inline]] TraceBatchOf part(std::size_t first, std::size_t count) const {

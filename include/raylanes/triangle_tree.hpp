@@ -45,14 +45,13 @@ struct TraceOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   /// The sides of triangles that count, by TriangleTest::exact: a ray passes through the other side as if the triangle
-  /// were not there. Rays that would be packets are traced as streams.
+  /// were not there.
   /// Throws std::invalid_argument if this is not Facing::any and the test is another one.
   Facing facing = Facing::any;
   LaneBits active = nullptr;  ///< the active rays of a batch; null: all
   /// For TriangleTest::exact: triangle skip[i] is not there for ray i; no_primitive leaves out none. So a ray that
   /// begins on a triangle need not begin behind it. Usually these are the hits of an earlier call: {.skip = hits}; they
-  /// may be those that results go to. An empty view leaves out nothing. Rays that would be packets are traced as
-  /// streams, which takes 1.4 to 1.7 times the time.
+  /// may be those that results go to. An empty view leaves out nothing.
   /// Throws std::invalid_argument for another test, or another number of indices than rays.
   PrimitiveView skip = {};
   /// If not null, what the call costs is added here, summed over its threads. No other call may add to it at the same

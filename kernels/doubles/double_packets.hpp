@@ -119,13 +119,14 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
       return Row::load(numbers + static_cast<std::uint32_t>(k) * lanes + i) * Row(batch_.scale);
     });
     std::uint32_t single[max_vectors], with_single = 0;
-    std::uint32_t hit = each_met(planes, size, at.vectors, [&](int triangle, int row) {
-      const std::uint32_t undecided =
-          test_vector(planes, triangle, row, first + static_cast<std::uint32_t>(triangle));
-      if (undecided != 0)
-        single[row] = undecided | (with_single >> row & 1u ? single[row] : 0u), with_single |= 1u << row;
-      return changed_;
-    });
+    std::uint32_t hit =
+        each_met(planes, first_lanes<tree_width>(size), at.vectors, [&](int triangle, int row) {
+          const std::uint32_t undecided =
+              test_vector(planes, triangle, row, first + static_cast<std::uint32_t>(triangle));
+          if (undecided != 0)
+            single[row] = undecided | (with_single >> row & 1u ? single[row] : 0u), with_single |= 1u << row;
+          return changed_;
+        });
     for (std::uint32_t vectors = with_single; vectors != 0; vectors &= vectors - 1) {
       const int row = std::countr_zero(vectors);
       for (std::uint32_t rays = single[row] & rays_.active[row]; rays != 0; rays &= rays - 1)

@@ -116,14 +116,17 @@ void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels&
   }
 }
 
-// Hits of chosen triangles, of rays alone or together, against next hits of these of scalar.
+// Hits of chosen triangles, of rays alone or together, against next hits of these of scalar. chosen: for packets.
 void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRow& of_scalar,
-                    const QueryKernels& scalar_queries, std::size_t bytes) {
+                    const QueryKernels& scalar_queries, std::size_t bytes,
+                    const ChosenCallRow* chosen = nullptr) {
   const bool has_closest = every.offers(mine.closest, of_scalar.closest);
   every.offers(mine.any, of_scalar.any), every.offers(mine.scratch_bytes, of_scalar.scratch_bytes);
   if (!has_closest) return;
   const SmallTree tree;
-  const std::vector<Ray> rays = some_rays();
+  std::vector<Ray> rays = some_rays();
+  if (chosen != nullptr)
+    for (Ray& ray : rays) ray.origin = {0.1f, -0.2f, 0.3f};
   std::vector<Line> scratch(bytes / sizeof(Line) + 1);
   std::vector<std::vector<Hit>> of_sides;
   std::vector<std::uint32_t> skip(most, no_primitive);
@@ -134,7 +137,7 @@ void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRo
     TraceCounters counters;
     TraceBatch batch;
     batch.rays = rays.data(), batch.size = most, batch.counters = &counters, batch.facing = side;
-    batch.scratch = scratch.data(), batch.skip = skips ? skip.data() : nullptr;
+    batch.scratch = scratch.data(), batch.skip = skips ? skip.data() : nullptr, batch.chosen = chosen;
     batch.hits = scalar.data(), scalar_queries.next(tree.view, batch);
     batch.hits = found.data(), mine.closest(tree.view, batch);
     batch.occluded = occluded.data(), mine.any(tree.view, batch);
@@ -154,8 +157,12 @@ void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRo
 // Single calls against the single rays of scalar.
 void compare_chosen_calls(EveryRow& every, const ChosenCallRow& mine, const ChosenCallRow& of_scalar,
                           const TraversalRow& single_of_scalar) {
-  if (!every.offers(mine.closest, of_scalar.closest) || !every.offers(mine.any, of_scalar.any)) return;
+  if (!every.offers(mine.closest, of_scalar.closest) || !every.offers(mine.any, of_scalar.any) ||
+      !every.offers(mine.nearer, of_scalar.nearer))
+    return;
+  constexpr std::uint32_t no_triangle = ~0u;
   const SmallTree tree;
+  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.view.blocks);
   std::size_t found = 0;
   for (const Facing side : {Facing::any, Facing::front, Facing::back})
     for (const Ray& ray : some_rays())
@@ -168,6 +175,14 @@ void compare_chosen_calls(EveryRow& every, const ChosenCallRow& mine, const Chos
         EXPECT_TRUE(same_bytes(hit, of_scalar.closest(tree.view, ray, side, skipped)));
         EXPECT_EQ(mine.any(tree.view, ray, side, skipped), bool(hit));
         EXPECT_EQ(of_scalar.any(tree.view, ray, side, skipped), bool(hit));
+        NearestSoFar best{hit.t, hit.t, no_triangle};
+        if (hit)
+          best.t_lo = best.tmax = std::nextafter(hit.t, infinity),
+          mine.nearer(tree.view, ray, best, side, skipped);
+        const std::uint32_t triangle = best.leaf_triangle;
+        EXPECT_EQ(triangle == no_triangle ? no_primitive
+                                          : blocks[triangle / tree_width].primitive[triangle % tree_width],
+                  hit.primitive);
         found += hit ? 1 : 0, skipped = hit.primitive;
       }
   EXPECT_GT(found, 20u);
@@ -282,13 +297,22 @@ TEST_P(EveryRow, of_queries) {
     compare_lists<ListEntryOf<float>>(*this, rows.list_along_axes, scalars.list_along_axes, rays_along_axes(),
                                       ListKind::sides, ListStop::at_origin);
     compare_next(*this, rows, scalars);
-    const std::size_t of_streams = kernels_of(path()).traversal.scratch_bytes(TraversalMode::stream, most);
+    const TraversalKernels& traversal = kernels_of(path()).traversal;
+    const std::size_t of_streams = traversal.scratch_bytes(TraversalMode::stream, most),
+                      of_packets = traversal.scratch_bytes(TraversalMode::packet, most);
     compare_chosen(*this, rows.chosen_single, scalars.chosen_single, scalars, of_streams);
     compare_chosen(*this, rows.chosen_stream, scalars.chosen_stream, scalars, of_streams);
+    if (kernels == &AllQueryKernels::plain) {
+      const auto packets = [](const KernelTable& of) {
+        return of.traversal.mode[static_cast<std::size_t>(TraversalMode::packet)]
+            .row[static_cast<std::size_t>(TriangleTest::exact)][0];
+      };
+      compare_chosen(*this, packets(kernels_of(path())), packets(kernels_of(scalar())), scalars, of_packets,
+                     &rows.chosen_call);
+    }
     compare_chosen_calls(*this, rows.chosen_call, scalars.chosen_call, scalars.chosen_single);
     compare_visits(*this, rows, scalars, of_streams, false);
-    compare_visits(*this, rows, scalars,
-                   kernels_of(path()).traversal.scratch_bytes(TraversalMode::packet, most), true);
+    compare_visits(*this, rows, scalars, of_packets, true);
     offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together
   }
   expect_all_called(mine.plain), expect_all_called(mine.counted);

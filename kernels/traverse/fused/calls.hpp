@@ -122,6 +122,16 @@ template <class Test>
   return is_any_chosen<Test>(tree, ray, ChosenTriangles(facing, skipped));
 }
 
+template <class Test>
+void nearer_chosen(const TreeView& tree, const Ray& ray, NearestSoFar& best, Facing facing,
+                   std::uint32_t skipped) {
+  ChosenCandidate query(Candidate(best.t_lo, best.tmax, best.leaf_triangle),
+                        ChosenTriangles(facing, skipped));
+  NoCounters counters(query);
+  WalksNodes::walk<Test>(tree, ray, query, counters);
+  best = {query.t_lo, query.tmax, query.leaf_triangle};
+}
+
 [[gnu::noinline, gnu::flatten, maybe_unused]] SceneHit closest_in_scene(const TreeView& tree,
                                                                         const TriangleOwners& owners,
                                                                         const Ray& ray) {

@@ -40,6 +40,8 @@ class alignas(64) EdgePlanes : PlaneNumbers<float> {
  public:
   // Triangles whose t follows from their planes, with no numbers of unusual size where they are hit.
   std::uint32_t plain = 0;
+  // Triangles whose normals point away from the apex, if they are plain.
+  std::uint32_t away = 0;
 
   // number(k, i): lanes of number k of the triangles' corners, from i on. apex: in the order of the frame.
   template <class Number>
@@ -197,6 +199,7 @@ class alignas(64) EdgePlanes : PlaneNumbers<float> {
     auto& planes = numbers_of(*this);
     select(is_ahead, -bound, -infinite).store(planes.minus_bound + i);
     const auto sign = sign_of(spanned);
+    away |= bits(spanned > V(0.0f)) << i;
     V share = (spanned_bound + spanned_bound) / size_of_volume + V(16 * unit);
     size_of_volume.store(volume_ + i);
     (size_of_volume * (V(1.0f) - share)).store(min_volume_ + i);

@@ -9,6 +9,38 @@
 namespace raylanes {
 namespace {
 
+// Whether packets look at facing and skip.
+template <class Test, class Counters>
+inline constexpr bool packets_choose = is_filtered<Test>&& std::is_same_v<Counters, NoCounters>;
+
+// Reads all primitives at once, which packets will read in another order.
+[[gnu::noinline]] inline bool skips_nothing(const TraceBatch& batch) {
+  const FloatBits<W> nothing(no_primitive);
+  FloatBits<W> all = nothing;
+  std::size_t i = 0;
+  for (; batch.size - i >= W; i += W) all = all & FloatBits<W>::load(batch.skip + i);
+  std::uint32_t others = ~bits(equal_words(all, nothing)) & first_lanes<W>(W);
+  for (; i < batch.size; ++i) others |= ~batch.skip[i];
+  return others == 0;
+}
+
+// Rays that are no packet.
+template <class Test, bool only_decides, class Counters>
+[[gnu::noinline]] void trace_others(const TreeView& tree, const TraceBatch& batch) {
+  if constexpr (packets_choose<Test, Counters>)
+    if (batch.chosen != nullptr) {
+      for (std::size_t i = 0; i < batch.size; ++i) {
+        const std::uint32_t skipped = skipped_by(batch, i);
+        if constexpr (only_decides)
+          batch.occluded[i] = batch.chosen->any(tree, batch.rays[i], batch.facing, skipped) ? 1 : 0;
+        else
+          batch.hits[i] = batch.chosen->closest(tree, batch.rays[i], batch.facing, skipped);
+      }
+      return;
+    }
+  trace_singles<Test, only_decides, Counters>(tree, batch);
+}
+
 template <class Test, SharedApex apex, bool only_decides, class Counters>
 class PacketLeaves : public PacketWalk<apex, Counters> {
   using V = Floats<W>;
@@ -31,9 +63,12 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   void begin() {
     if constexpr (!only_decides)
       for (int row = 0; row < rays_.vectors; ++row) rays_.clear_hits(row);
+    if constexpr (chooses)
+      for (int row = 0; batch_.skip != nullptr && row < rays_.vectors; ++row)
+        rays_.set_skipped(row, batch_.skip);
   }
   void trace_single(std::size_t index) {
-    trace_singles<Test, only_decides, Counters>(tree_, part_of(batch_, index, 1));
+    trace_others<Test, only_decides, Counters>(tree_, part_of(batch_, index, 1));
   }
   void store_results() {
     for (int row = 0; row < rays_.vectors; ++row) store_results(row);
@@ -43,7 +78,10 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     const Triangles triangles(leaf.block, frame_);
     const int size = leaf_size(at.reference);
     counters().leaf(), counters().frusta(first_lanes<tree_width>(size), tree_width / node_lanes);
-    std::uint32_t hit = this->each_met(triangles, size, at.vectors, [&](int triangle, int row) {
+    std::uint32_t some = first_lanes<tree_width>(size);
+    if constexpr (chooses && apex != SharedApex::none)
+      some &= ~triangles.plain | lanes_that_count(batch_.facing, ~0u, front_of(triangles));
+    std::uint32_t hit = this->each_met(triangles, some, at.vectors, [&](int triangle, int row) {
       return test_vector(triangles, leaf, triangle, row);
     });
     if constexpr (filters_undecided)
@@ -53,6 +91,8 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   // For any hit few nodes are left: the walk of single rays, out of line, gains nothing there.
   [[gnu::noinline, gnu::flatten]] void trace_rays(const StackEntry& at) {
     this->each_single(at, [this](const TreeView& below, int row, int lane) {
+      if constexpr (chooses)
+        if (batch_.chosen != nullptr) return trace_chosen(below, row, lane);
       Counters cost = counters();
       const Ray& ray = ray_of(row, lane);
       if constexpr (only_decides) {
@@ -69,11 +109,42 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
 
  private:
   static constexpr bool filters_undecided = is_filtered<Test> && only_decides && apex == SharedApex::end;
+  static constexpr bool chooses = packets_choose<Test, Counters>;
 
   struct Leaf {
     const LeafBlock<Test::floats>& block;
     TreeReference reference;
   };
+
+  // The plain triangles to whose front rays come: those that end at the apex come from the other side.
+  static std::uint32_t front_of(const Triangles& triangles) {
+    return apex == SharedApex::end ? triangles.away : ~triangles.away;
+  }
+  // The active rays that do not skip a triangle.
+  std::uint32_t rays_for(const Leaf& leaf, int triangle, int row) const {
+    if constexpr (chooses)
+      if (batch_.skip != nullptr)
+        return rays_.active[row] & ~rays_.rays_that_skip(row, leaf.block.primitive[triangle]);
+    return rays_.active[row];
+  }
+  // Leaves the lanes that are hit on a side that counts, of certain hits.
+  std::uint32_t on_sides(std::uint32_t certain, V det) const {
+    if constexpr (chooses) return lanes_that_count(batch_.facing, certain, bits(det > V(0.0f)));
+    return certain;
+  }
+  // As trace_rays(), by the batch's row.
+  void trace_chosen(const TreeView& below, int row, int lane) {
+    const Ray& ray = ray_of(row, lane);
+    const std::uint32_t skipped = batch_.skip != nullptr ? rays_.skipped[row][lane] : no_primitive;
+    if constexpr (only_decides) {
+      if (batch_.chosen->any(below, ray, batch_.facing, skipped)) rays_.active[row] &= ~(1u << lane);
+    } else {
+      const Candidate so_far = rays_.query(row, lane);
+      NearestSoFar best{so_far.t_lo, so_far.tmax, so_far.leaf_triangle};
+      batch_.chosen->nearer(below, ray, best, batch_.facing, skipped);
+      rays_.keep(row, lane, Candidate(best.t_lo, best.tmax, best.leaf_triangle));
+    }
+  }
 
   // Tests a vector of rays and one triangle; returns whether segments have changed. If the planes of a triangle and its
   // t leave nothing undecided, no test is needed; only the test itself gives the numbers of a hit.
@@ -82,7 +153,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     if constexpr (apex != SharedApex::none && may_take_planes<Test>)
       return hit_planes(triangles, leaf, triangle, row);
     else if constexpr (apex == SharedApex::none || is_closest_hit)
-      return test_triangle(leaf, triangle, row, rays_.active[row]);
+      return test_triangle(leaf, triangle, row, rays_for(leaf, triangle, row));
     else
       return decide_by_planes(triangles, leaf, triangle, row);
   }
@@ -106,7 +177,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   bool decide_by_planes(const Triangles& planes, const Leaf& leaf, int triangle, int row) {
     V x = V::load(rays_.slope_x[row]), y = V::load(rays_.slope_y[row]);
     V side = planes.side(triangle, x, y);
-    std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & rays_.active[row];
+    std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & rays_for(leaf, triangle, row);
     if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
       return rays != 0 && leave_undecided(leaf, triangle, row, rays);
     const auto range = segment(row);
@@ -148,10 +219,11 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
       for (std::uint32_t triangles = undecided_[row]; triangles != 0; triangles &= triangles - 1) {
         const int triangle = std::countr_zero(triangles);
         const auto filtered = filter.classify(lanes, length, triangle, range);
-        const std::uint32_t active = rays_.active[row], certain = bits(filtered.certain) & active & ~far;
+        const std::uint32_t active = rays_.active[row], met = rays_for(leaf, triangle, row);
+        const std::uint32_t certain = on_sides(bits(filtered.certain) & met & ~far, filtered.det);
         counters().hits(certain);
         rays_.active[row] &= ~certain;
-        const std::uint32_t undecided = (bits(filtered.undecided) | far) & rays_.active[row];
+        const std::uint32_t undecided = (bits(filtered.undecided) | far) & rays_.active[row] & met;
         if (undecided != 0) [[unlikely]]
           test_out_of_line(leaf, triangle, row, undecided);
         if (rays_.active[row] != active) hit |= 1u << row;
@@ -179,10 +251,11 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     if constexpr (is_filtered<Test>) {
       auto filtered = Test::template classify<true>(prepared.triangles, load, rays, [&] { return range; });
       if ((filtered.certain | filtered.undecided) == 0) return false;
+      filtered.certain = on_sides(filtered.certain, filtered.det);
       counters().hits(filtered.certain), counters().undecided(filtered.undecided);
       keep_certain(filtered, leaf, triangle, row);
       if (filtered.undecided != 0) [[unlikely]] {
-        if constexpr (apex == SharedApex::end)
+        if (apex == SharedApex::end && batch_.facing == Facing::any)
           rays_.active[row] &= ~bits(Test::decide(prepared.triangles, load, range, filtered.undecided).hit);
         else
           decide_exactly(filtered.undecided, leaf_triangle_of(leaf.reference, triangle), row);
@@ -210,14 +283,17 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
       rays_.keep_certain(row, filtered, leaf_triangle_of(leaf.reference, triangle));
   }
   [[gnu::noinline]] void decide_exactly(std::uint32_t undecided, std::uint32_t leaf_triangle, int row) {
+    const TreeTriangles triangles(tree_);
+    const std::conditional_t<chooses, ChosenTriangles, BothSides> sides(batch_);
     for (; undecided != 0; undecided &= undecided - 1) {
       const int lane = std::countr_zero(undecided);
+      const Ray& ray = ray_of(row, lane);
       if constexpr (only_decides) {
-        if (exact_hit(TreeTriangles(tree_), ray_of(row, lane), leaf_triangle))
+        if (sides.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle))
           rays_.active[row] &= ~(1u << lane);
       } else {
         Candidate best = rays_.query(row, lane);
-        compare_exactly(TreeTriangles(tree_), ray_of(row, lane), leaf_triangle, best);
+        compare_exactly(triangles, ray, leaf_triangle, best, sides);
         rays_.keep(row, lane, best);
       }
     }
@@ -284,7 +360,9 @@ template <class Test, SharedApex apex, bool only_decides, class Counters>
 inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
   for (std::size_t i = 0; i < batch.size; i += max_sorted_rays) {
     const std::size_t left = batch.size - i;
-    const TraceBatch part = part_of(batch, i, left < max_sorted_rays ? left : max_sorted_rays);
+    TraceBatch part = part_of(batch, i, left < max_sorted_rays ? left : max_sorted_rays);
+    if constexpr (packets_choose<Test, Counters>)
+      if (part.skip != nullptr && skips_nothing(part)) part.skip = nullptr;
     Ray from_apex;
     from_apex.origin = apex == SharedApex::none  ? middle_of(tree.bounds)
                        : apex == SharedApex::end ? batch.shared_end
@@ -295,7 +373,7 @@ inline void trace_packets_of(const TreeView& tree, const TraceBatch& batch) {
       Leaves leaves(tree, part, scratch.rays, {from_apex.origin, reach(from_apex, tree.bounds)}, left);
       leaves.trace(scratch.order);
     } else
-      trace_singles<Test, only_decides, Counters>(tree, part);
+      trace_others<Test, only_decides, Counters>(tree, part);
   }
 }
 template <class Test, bool only_decides, class Counters>
@@ -307,7 +385,7 @@ void trace_packets(const TreeView& tree, const TraceBatch& batch) {
   else if (batch.shared_point == SharedApex::end)
     trace_packets_of<Test, SharedApex::end, true, Counters>(tree, batch);
   else
-    trace_singles<Test, true, Counters>(tree, batch);
+    trace_others<Test, true, Counters>(tree, batch);
 }
 
 template <class Test>

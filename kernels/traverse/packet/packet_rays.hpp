@@ -234,7 +234,16 @@ struct RaysAndHits : RaysOf<apex> {
   using RaysOf<apex>::tmax;
   float t_lo[max_vectors][W];
   std::uint32_t leaf_triangle[max_vectors][W];
+  std::uint32_t skipped[max_vectors][W];  // the primitives that rays skip, if some skip any
 
+  // skip: of the rays of the batch. Lanes without a ray get what a ray of the batch has, too.
+  void set_skipped(int row, const std::uint32_t* skip) {
+    const std::uint32_t* const run = this->first_run[row];
+    for (int lane = 0; lane < W; ++lane) skipped[row][lane] = skip[this->runs.index(run, lane)];
+  }
+  std::uint32_t rays_that_skip(int row, std::uint32_t primitive) const {
+    return bits(equal_words(FloatBits<W>::load(skipped[row]), FloatBits<W>(primitive)));
+  }
   void clear_hits(int row) {
     V::load(tmax[row]).store(t_lo[row]);
     FloatBits<W>(no_leaf_triangle).store(leaf_triangle[row]);

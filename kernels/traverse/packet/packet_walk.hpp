@@ -92,13 +92,13 @@ class PacketWalk {
  protected:
   const Counters& counters() const { return counters_; }
   const Ray& ray_of(int row, int lane) const { return batch_rays_[rays_.index(row, lane)]; }
-  // Calls test(triangle, row) for the triangles of a leaf and the vectors that may meet one. Returns the vectors for
+  // Calls test(triangle, row) for some triangles of a leaf and the vectors that may meet one. Returns the vectors for
   // which it is true.
   template <class Shapes, class Test>
-  std::uint32_t each_met(const Shapes& shapes, int size, std::uint32_t vectors, Test test) const {
+  std::uint32_t each_met(const Shapes& shapes, std::uint32_t some, std::uint32_t vectors, Test test) const {
     std::uint32_t hit = 0;
-    for (std::uint32_t triangles = met_by_any(shapes, vectors) & first_lanes<tree_width>(size);
-         triangles != 0; triangles &= triangles - 1) {
+    for (std::uint32_t triangles = met_by_any(shapes, vectors) & some; triangles != 0;
+         triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
       for (std::uint32_t met = vectors_met(shapes, triangle, vectors); met != 0; met &= met - 1) {
         const int row = std::countr_zero(met);

@@ -105,7 +105,18 @@ std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::s
 }
 
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits) {
-  EXPECT_GE(expect_exact_hits(Bvh(mesh), mesh, rays), min_hits);
+  const Bvh bvh(mesh);
+  EXPECT_GE(expect_exact_hits(bvh, mesh, rays), min_hits);
+  TraceOptions scalar{.mode = TraversalMode::single, .path = &paths().front()};
+  std::vector<std::uint32_t> skip;
+  for (const Hit& hit : trace(bvh, rays, scalar))
+    skip.push_back(skip.size() % 4 == 3 ? no_primitive : hit.primitive);
+  for (const TraceOptions& base :
+       {TraceOptions{.facing = Facing::front}, TraceOptions{.facing = Facing::back, .skip = skip},
+        TraceOptions{.skip = skip}}) {
+    scalar.facing = base.facing, scalar.skip = base.skip;
+    expect_hits(bvh, rays, trace(bvh, rays, scalar), base);
+  }
 }
 
 }  // namespace raylanes::testing

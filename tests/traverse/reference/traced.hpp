@@ -34,7 +34,8 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
-// The same for a BVH, with hits of at least so many rays.
+// The same for a BVH, with hits of at least so many rays. And every way to trace has the hits of single rays by scalar
+// code for triangles of one side, and without the triangles that most rays hit first.
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits);
 
 }  // namespace raylanes::testing
