@@ -46,26 +46,40 @@ struct EveryHit {
   }
 };
 
+// A filter is asked about so many hits at a time: these and what it says stay in the second level of caches.
+constexpr std::size_t hits_of_filter_calls = 8192;
+
 // Replaces hits that the filter turns down by the next ones, until it keeps them or there is none. The filter is asked
 // about hits for which may_turn_down(hit) is true. next(rays, hits, indices) replaces hits[k] by the hit of rays[k]
 // behind it.
 template <class AnyHit, class Source, class Filter, class View, class Next, class Asked = EveryHit>
 void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next,
                          const Asked& may_turn_down = {}) {
+  std::vector<std::uint8_t> rejected;
+  const auto ask = [&](const std::vector<std::size_t>& indices, const std::vector<AnyHit>& some) {
+    rejected.assign(indices.size(), 0);
+    if (!indices.empty()) filter(indices, some, rejected);
+  };
   TurnedDown<AnyHit, typename Source::Ray> some;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
-    if (!hit || !may_turn_down(hit)) continue;
-    some.indices.push_back(i), some.rays.push_back(rays[i]), some.hits.push_back(hit);
+  std::vector<std::size_t> indices;
+  std::vector<AnyHit> found;
+  for (std::size_t i = 0; i < rays.size();) {
+    for (indices.clear(), found.clear(); i < rays.size() && indices.size() < hits_of_filter_calls; ++i) {
+      const AnyHit hit = rays.takes_part(i) ? hits[i] : AnyHit();
+      if (hit && may_turn_down(hit)) indices.push_back(i), found.push_back(hit);
+    }
+    ask(indices, found);
+    for (std::size_t k = 0; k < indices.size(); ++k)
+      if (rejected[k] != 0)
+        some.indices.push_back(indices[k]), some.rays.push_back(rays[indices[k]]),
+            some.hits.push_back(found[k]);
   }
-  for (;;) {
-    std::vector<std::uint8_t> rejected(some.indices.size(), 0);
-    if (!some.indices.empty()) filter(some.indices, some.hits, rejected);
-    some.keep([&](std::size_t k) { return rejected[k] != 0; });
-    if (some.indices.empty()) return;
+  while (!some.indices.empty()) {
     next(some.rays, some.hits, some.indices);
     for (std::size_t k = 0; k < some.indices.size(); ++k) hits.set(some.indices[k], some.hits[k]);
     some.keep([&](std::size_t k) { return some.hits[k] && may_turn_down(some.hits[k]); });
+    ask(some.indices, some.hits);
+    some.keep([&](std::size_t k) { return rejected[k] != 0; });
   }
 }
 

@@ -142,6 +142,35 @@ TEST(Filters, of_occluded_ignore_hits_to_look_behind) {
   EXPECT_EQ(occluded, expected);
 }
 
+// More hits than a filter is asked about at a time: the nearest hits of all rays, in order, come before next hits.
+TEST(Filters, see_nearest_hits_of_large_batches_first) {
+  const Mesh mesh = triangle_soup(40, 1.0f, 70);
+  const Bvh bvh(mesh);
+  const std::vector<Ray> few = aimed_rays(mesh, 500, 2, 71), rays = repeated(few, 20000);
+  std::vector<Hit> nearest(rays.size()), hits(rays.size()), expected(few.size());
+  bvh.closest(rays, nearest);
+  bvh.closest(few, expected, HitFilter(reject_even<Hit>));
+  std::size_t last = 0, nearest_seen = 0, others = 0, calls = 0;
+  const HitFilter filter = [&](std::span<const std::size_t> of, std::span<const Hit> some,
+                               std::span<std::uint8_t> rejected) {
+    ++calls;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const bool is_nearest = same_bytes(some[k], nearest[of[k]]);
+      EXPECT_TRUE(!is_nearest || (others == 0 && (nearest_seen == 0 || of[k] > last)));
+      (is_nearest ? nearest_seen : others) += 1, last = of[k];
+    }
+    reject_even<Hit>(of, some, rejected);
+  };
+  bvh.closest(rays, hits, filter);
+  EXPECT_EQ(nearest_seen, static_cast<std::size_t>(
+                              std::ranges::count_if(nearest, [](const Hit& hit) { return bool(hit); })));
+  EXPECT_GT(nearest_seen, 10000u);
+  EXPECT_GT(others, 1000u);
+  EXPECT_GT(calls, 2u);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_TRUE(same_bytes(hits[i], expected[i % few.size()])) << i;
+}
+
 TEST(Filters, see_each_hit_once_in_order_and_may_throw) {
   const Mesh mesh = triangle_soup(200, 0.5f, 70);
   const std::vector<Ray> rays = aimed_rays(mesh, 100, 2, 71);
