@@ -34,7 +34,7 @@ struct BvhDArrays : NodesOfMesh {
 
   DoubleTreeView view() const {
     DoubleTreeView view{{nodes.data(), nullptr, live_root(), bounds}, halves.data(), frame, mesh_bounds};
-    view.tree.rays_wait = rays_wait;
+    view.tree.rays_wait = rays_wait && view.tree.root != empty_reference;
     return view;
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + halves.bytes(); }

@@ -57,7 +57,7 @@ struct BvhArrays : TreeLeaves, NodesOfMesh {
   TreeView view() const {
     TreeView view{nodes.data(), corners.blocks(), live_root(), bounds};
     view.streams_from = streams_from;
-    view.rays_wait = rays_wait;
+    view.rays_wait = rays_wait && view.root != empty_reference;
     return view;
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes(); }

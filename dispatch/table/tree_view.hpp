@@ -33,7 +33,7 @@ struct TreeView {
   float origin_share = 0.0f;  // boxes are also padded by this share of the origin's largest coordinate
   float padding = 0.0f;       // and by this distance
   StreamSizes streams_from = {};
-  bool rays_wait = false;  // single rays of a batch mostly wait for memory
+  bool rays_wait = false;  // single rays of a batch mostly wait for memory; the tree has a root
 };
 
 }  // namespace raylanes

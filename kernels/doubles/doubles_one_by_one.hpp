@@ -114,7 +114,7 @@ struct FlyingDoubles {
 };
 
 inline bool fly(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  return tree.tree.rays_wait && batch.size >= min_flights && tree.tree.root != empty_reference;
+  return tree.tree.rays_wait && batch.size >= min_flights;
 }
 template <class Asked>
 [[gnu::noinline, gnu::flatten]] void closest_doubles_in_flight(const DoubleTreeView& tree,

@@ -6,6 +6,7 @@
 #include <raylanes/scene.hpp>
 
 #include "../../bench/support/oracles/exact_point.hpp"
+#include "../traverse/reference/in_flight.hpp"
 #include "refitted.hpp"
 
 namespace raylanes::testing {
@@ -148,6 +149,23 @@ TYPED_TEST(Collapsed, of_two_triangles_one_is_left) {
   for (auto& vertex : vertices) vertex[2] = static_cast<T>(-0.0);
   tree.refit(vertices, triangles);
   EXPECT_TRUE(same_bytes(tree.bounds(), this->tree_of({vertices, triangles}).bounds()));
+}
+
+// So large that its rays fly, before the refit.
+TYPED_TEST(Collapsed, as_a_whole_have_no_hits) {
+  auto mesh = this->soup(200, 0.5f, 907);
+  auto tree = this->tree_of(mesh);
+  let_rays_fly(tree);
+  const auto rays = this->rays_to(mesh, 100, 908);
+  for (auto& vertex : mesh.vertices) vertex = mesh.vertices[0];
+  tree.refit(mesh.vertices, mesh.triangles);
+  for (const Path* path : paths_with_own_queries()) {
+    std::vector<HitOf<TypeParam>> hits(rays.size(), {1, 0, 0, 0});
+    std::vector<std::uint8_t> occluded(rays.size(), 1);
+    tree.closest(rays, hits, {.path = path}), tree.occluded(rays, occluded, {.path = path});
+    EXPECT_EQ(std::ranges::count_if(hits, [](const auto& hit) { return static_cast<bool>(hit); }), 0);
+    EXPECT_EQ(std::ranges::count(occluded, 0), std::ssize(rays));
+  }
 }
 
 TEST(CollapsedInScenes, answer_as_scenes_with_trees_that_are_built) {
