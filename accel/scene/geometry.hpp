@@ -40,6 +40,8 @@ class Geometry {
   virtual float slack() const { return 0.0f; }
   // Its tree of triangles, which a mesh builds at the first call; null if it has no triangles. Any thread may call it.
   virtual const Bvh* triangles() const { return nullptr; }
+  // The same, built on several threads.
+  virtual const Bvh* built(int) const { return triangles(); }
   // These are known without a tree: the number of triangles, their corners as nine numbers each, and how a tree is
   // built. Corners of triangles that nothing hits may stay as they are.
   virtual std::size_t mesh_triangles() const { return 0; }

@@ -101,8 +101,7 @@ void Scene::update(int threads) {
   for (std::size_t i = 0; i < bounds.size(); ++i)
     if (common.has(i)) bounds[i] = {empty_box};
   for (std::size_t i = 0; i < bounds.size(); ++i)
-    if (is_visited(bounds[i].box))
-      parts.geometries[parts.instances[i].geometry]->triangles();  // is built now
+    if (is_visited(bounds[i].box)) parts.geometries[parts.instances[i].geometry]->built(threads);
   parts.set_trees();
   parts.set_tops(tops_over(parts.instances, bounds));
   common.commit(parts);

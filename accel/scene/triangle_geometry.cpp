@@ -1,6 +1,6 @@
 // Triangles in scenes.
+#include <atomic>
 #include <istream>
-#include <mutex>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -82,12 +82,17 @@ class MeshGeometry : public TriangleGeometry {
   }
 
   Box bounds() const override { return bounds_; }
-  const Bvh* triangles() const override {
-    std::call_once(is_building_, [&] {
-      tree_ = std::make_unique<Bvh>(vertices_, triangles_, options_);
-      has_tree_ = true;
-    });
-    return tree_.get();
+  ~MeshGeometry() override { delete tree_.load(); }
+  const Bvh* triangles() const override { return built(1); }
+  // Without a lock, under which a build on several threads might come upon another query of this mesh: if two threads
+  // build the tree, that of the first one counts.
+  const Bvh* built(int threads) const override {
+    if (const Bvh* const tree = tree_) return tree;
+    BuildOptions options = options_;
+    options.threads = threads;
+    auto made = std::make_unique<const Bvh>(vertices_, triangles_, options);
+    const Bvh* first = nullptr;
+    return tree_.compare_exchange_strong(first, made.get()) ? made.release() : first;
   }
   std::size_t mesh_triangles() const override { return triangles_.size(); }
   void put_corners(float* corners) const override {
@@ -96,11 +101,11 @@ class MeshGeometry : public TriangleGeometry {
         corners = std::copy(vertices_[corner].begin(), vertices_[corner].end(), corners);
   }
   BuildOptions build_options() const override { return options_; }
-  bool has_tree() const override { return has_tree_; }
+  bool has_tree() const override { return tree_ != nullptr; }
   std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) override {
     if (has_tree())
       return std::make_unique<TreeGeometry>(
-          std::make_shared<Bvh>(tree_->refitted(vertices, triangles, threads)));
+          std::make_shared<Bvh>(tree_.load()->refitted(vertices, triangles, threads)));
     require_size("refit", "triangles", triangles.count, "geometry", triangles_.size());
     BuildOptions options = options_;
     options.threads = threads;
@@ -112,9 +117,7 @@ class MeshGeometry : public TriangleGeometry {
   std::vector<Float3> vertices_;
   std::vector<Index3> triangles_;
   Box bounds_ = empty_box;
-  mutable std::once_flag is_building_;
-  mutable std::atomic<bool> has_tree_{false};
-  mutable std::unique_ptr<const Bvh> tree_;
+  mutable std::atomic<const Bvh*> tree_{nullptr};
 };
 
 std::unique_ptr<Geometry> triangles_of(Bvh tree) {

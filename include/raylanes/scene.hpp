@@ -98,8 +98,8 @@ class Scene {
   /// Adds a mesh, which the scene copies, and whose tree is built when it is first needed; returns the index of the
   /// geometry. Instances in the common tree need none, so nothing is built or stored twice: a mesh takes 12 bytes a
   /// vertex and 12 a triangle. update() builds the trees of the other instances. Otherwise the first call that needs
-  /// the tree builds it: tree(), save(), normals(), closest_crossing(), and queries after set_mask(). Many threads may
-  /// make that call at the same time. Throws as the constructor of Bvh does.
+  /// the tree builds it on one thread: tree(), save(), normals(), closest_crossing(), and queries after set_mask().
+  /// Many threads may make that call at the same time. Throws as the constructor of Bvh does.
   std::uint32_t add(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   /// Adds a mesh as its vertices and triangles.
   std::uint32_t add(const Mesh& mesh, const BuildOptions& options = {}) {
@@ -168,7 +168,7 @@ class Scene {
   /// common tree where the rules of the class say so, in the time of a Bvh of its triangles. An instance of 1,000
   /// triangles is struck out of the common tree in less than a millisecond. If a copy of the scene has that tree, too,
   /// it is copied first. Large instances that overlap are opened for calls with one ray, in up to 0.5 ms.
-  /// `threads` is as in TraceOptions, for the common tree.
+  /// `threads` is as in TraceOptions, for the common tree and the trees of meshes.
   /// Throws std::invalid_argument if the thread count is negative. Strong exception guarantee: if this throws, the
   /// scene is unchanged.
   void update(int threads = 1);

@@ -72,7 +72,7 @@ class Scene(SceneQueries, Stored):
         faces : array of int, shape (m, 3), optional
             The triangles of a mesh, as in Bvh.
         threads : int, default 0
-            At most so many threads to build the tree of a mesh; 0: all cores.
+            At most so many threads to check a mesh; 0: all cores. update() builds trees.
 
         Returns
         -------
