@@ -129,25 +129,26 @@ def sizes_table(results):
 
 
 def parts_table(results):
-    """Scenes of many parts by calls and batches, beside one tree of all and beside Embree."""
+    """Scenes of many parts by calls and batches, beside one tree and Embree; then parts that will move."""
     kinds = results.names('rays')
-    columns = [(contender, mode, key) for contender, keys in (('scene', ('ratio_to_tree', 'ratio')),
-                                                              ('scene_moving', ('ratio',)))
-               for mode in ('call', 'automatic') for key in keys]
-
-    def cells(value):
-        return [pair(value(rays=kind, contender=contender, mode=mode, key=key) for kind in kinds)
-                for contender, mode, key in columns]
-
     cases = dict.fromkeys((row['scene'], row['parts']) for row in results.rows)
-    lines = [[f'{scene}, {parts:,}', path, *cells(
-        lambda key, **values: results.one(scene=scene, parts=parts, path=path, **values)[key])]
-             for scene, parts in cases for path in TWO_PATHS]
-    lines += [['**geometric mean**', path, *cells(lambda key, **values: results.mean(key, path=path, **values))]
-              for path in TWO_PATHS]
-    return table(['scene, parts', 'ISA path', 'calls / one tree', "calls × Embree's flat scene", 'batches / one tree',
-                  "batches × Embree's flat scene", "moving: calls × Embree's instances", 'moving: batches × the same'],
-                 lines)
+
+    def cells(value, contender, keys):
+        return [pair(value(rays=kind, contender=contender, mode=mode, key=key) for kind in kinds)
+                for mode in ('call', 'automatic') for key in keys]
+
+    def table_of(contender, keys, titles):
+        lines = [[f'{scene}, {parts:,}', path, *cells(
+            lambda key, **values: results.one(scene=scene, parts=parts, path=path, **values)[key], contender, keys)]
+                 for scene, parts in cases for path in TWO_PATHS]
+        lines += [['**mean**', path, *cells(lambda key, **values: results.mean(key, path=path, **values), contender,
+                                            keys)] for path in TWO_PATHS]
+        return table(['scene, parts', 'ISA path', *titles], lines)
+
+    return [
+        *table_of('scene', ('ratio_to_tree', 'ratio'), [
+            'calls / one tree', "calls × Embree's flat scene", 'batches / one tree', 'batches × the same']), '',
+        *table_of('scene_moving', ('ratio',), ["moving: calls × Embree's instances", 'moving: batches × the same'])]
 
 
 def modes_table(results):
