@@ -102,8 +102,7 @@ class ActiveRays {
   void load_skips([[maybe_unused]] std::size_t begin) {
     if constexpr (can_skip) {
       if (source_.skip.first == nullptr) return;
-      skip = skips_;
-      if (skips_ == nullptr) skip = static_cast<const std::uint32_t*>(source_.skip.first) + begin;
+      skip = skips_ != nullptr ? skips_ : static_cast<const std::uint32_t*>(source_.skip.first) + begin;
       if (skips_ == nullptr) return;
       const PrimitiveView given = source_.skip;
       if (indices.copied == nullptr)

@@ -1,4 +1,5 @@
 // Stretches of rays within the instances of a scene: the crossings of each instance's triangles, taken together.
+#include <numeric>
 #include <tuple>
 
 #include "../../dispatch/quiet_floats.hpp"
@@ -25,7 +26,7 @@ class StretchesOfScene {
   std::vector<CrossingOfInstance> crossings() {
     if (const CommonTree* const common = query_.scene.seen_common(query_.mask)) {
       std::vector<std::uint32_t> all(rays_.size());
-      for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+      std::iota(all.begin(), all.end(), 0u);
       cross(*common->geometry->triangles(), common->numbers(), all, rays_);
     }
     of_instance_.resize(query_.scene.instances.size());

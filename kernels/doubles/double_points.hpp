@@ -54,6 +54,7 @@ class DoublePoints {
   using Triangles = ScaledTriangles;
   using Decided = Doubles<half>;
   static constexpr int decided = half;
+
   // A point in units of 1 / scale, and in the frame. The farthest have units of their own, and come to all leaves.
   struct Place {
     Double3 exact;

@@ -2,7 +2,7 @@
 // that its box lets through.
 #pragma once
 
-#include "../traverse/packet/packet_leaves.hpp"
+#include "../traverse/packet/packets.hpp"
 #include "visit.hpp"
 
 namespace raylanes {

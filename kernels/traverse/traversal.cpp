@@ -3,7 +3,7 @@
 // that those without stay as they are.
 #include "../triangle/all_tests.hpp"
 #include "instances.hpp"
-#include "packet/packet_leaves.hpp"
+#include "packet/packets.hpp"
 #include "single.hpp"
 #include "streams.hpp"
 
