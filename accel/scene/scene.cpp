@@ -60,26 +60,31 @@ const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
   const bool is_quick = scene.is_current && scene.tops.empty() && !QuietFloats::are_wanted();
   return is_quick ? scene.seen_common(mask) : nullptr;
 }
-// Whether a call with one ray by the exact test may go through all trees by kernels: instances consist of triangles.
+// Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
 bool is_walked(const SceneParts& scene) {
-  const auto has_triangles = [](const TopLevel& top) { return top.walked.entries != nullptr; };
-  return scene.is_current && std::ranges::all_of(scene.tops, has_triangles) && !QuietFloats::are_wanted();
+  return scene.is_current && !scene.has_only_others() && !QuietFloats::are_wanted();
 }
 SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
   const TraversalKernels& kernels = kernels_of(path).traversal;
   SceneHit hit;
   if (const CommonTree* const tree = scene.seen_common(mask))
     hit = kernels.closest_in_scene(*tree->view, tree->numbers().owners, ray);
-  for (const TopLevel& top : scene.tops) kernels.closest_of_instances(top.walked, ray, mask, hit);
+  for (const TopLevel& top : scene.tops)
+    if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
+  if (scene.has_others()) trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, &hit, nullptr});
   return hit;
 }
 bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
                      std::uint32_t mask) {
   const CommonTree* const tree = scene.seen_common(mask);
-  return (tree != nullptr && row.any(*tree->view, ray)) ||
-         std::ranges::any_of(scene.tops, [&](const TopLevel& top) {
-           return kernels_of(path).traversal.any_of_instances(top.walked, ray, mask);
-         });
+  if (tree != nullptr && row.any(*tree->view, ray)) return true;
+  for (const TopLevel& top : scene.tops)
+    if (top.walked.entries != nullptr && kernels_of(path).traversal.any_of_instances(top.walked, ray, mask))
+      return true;
+  std::uint8_t is_occluded = 0;
+  if (scene.has_others())
+    trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, nullptr, &is_occluded});
+  return is_occluded != 0;
 }
 
 // The same for a call that may skip a triangle: the row, and that triangle in the tree. A row of null: another way.

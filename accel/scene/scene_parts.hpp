@@ -15,11 +15,12 @@ struct TopLevel {
   BoxPadding rounded;        // what tests whose numbers are rounded need as well
   BoundedTreeArrays opened;  // for single rays: over nodes of large instances, too; empty if none is opened
   std::vector<InstanceEntry>
-      entries;                // in the leaves of `opened`, or else of `tree`; empty: not all are triangles
+      entries;                // in the leaves of `opened`, or else of `tree`; empty: none are triangles
   InstancesView walked = {};  // of the scene that has it
 
   std::size_t bytes() const { return tree.bytes() + opened.bytes() + entries.size() * sizeof(InstanceEntry); }
 };
+// Those of triangles first.
 std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> bounds);
 
 // An element of a list by its number.
@@ -51,7 +52,8 @@ struct SceneParts {
   std::vector<bool> is_changed;        // of geometries: replaced or refitted since the last update
   std::shared_ptr<CommonTree> common;  // of the last update; null: no instances have one
   bool traces_common = false;          // whether it is in use
-  // Small shares first. Each instance that can be hit, and is not in a common tree in use, is in one of them.
+  // Those of triangles first, then small shares. Each instance that can be hit, and is not in a common tree in use, is
+  // in one of them.
   std::vector<TopLevel> tops;
   bool is_current = true;  // whether all that is up to date
 
@@ -59,6 +61,10 @@ struct SceneParts {
   const CommonTree* seen_common(std::uint32_t of_mask) const {
     return traces_common && (common->mask & of_mask) != 0 ? common.get() : nullptr;
   }
+
+  // Whether it has spheres, primitives of the caller's, or meshes whose trees are not built yet, which no kernel walks.
+  bool has_others() const { return !tops.empty() && tops.back().walked.entries == nullptr; }
+  bool has_only_others() const { return !traces_common && has_others() && tops[0].walked.entries == nullptr; }
 
   // Sets the trees of instances whose geometry has one.
   void set_trees() noexcept;
@@ -99,6 +105,8 @@ struct SceneQuery : GeometryQuery {
 // Throws as Scene::closest().
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask);
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
+// The same for a batch that has the answers of all instances but those that no kernel walks.
+void trace_others(const SceneQuery& query, const SceneBatch& batch);
 // Finds hits as Scene::closest() does, once views and options are found good.
 void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
                 const TraceOptions& options, std::uint32_t mask);

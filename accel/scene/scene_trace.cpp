@@ -56,6 +56,10 @@ class SceneTracer {
     clear_answers(batch_);
     visit_tops(false);
   }
+  void trace_others() {
+    for (const TopLevel& top : query_.scene.tops)
+      if (top.walked.entries == nullptr) visit_instances(top, true);
+  }
 
  private:
   void visit_tops(bool has_answers) {
@@ -248,6 +252,9 @@ class SceneTracer {
 
 void trace_scene(const SceneQuery& query, const SceneBatch& batch) {
   SceneTracer(query, batch).trace();
+}
+void trace_others(const SceneQuery& query, const SceneBatch& batch) {
+  SceneTracer(query, batch).trace_others();
 }
 
 }  // namespace raylanes

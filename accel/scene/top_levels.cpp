@@ -62,14 +62,12 @@ void open_largest(std::vector<PlacedEntry>& entries, std::span<const Instance> i
   entries.insert(entries.end(), closed.begin(), closed.end());
 }
 
-// Sets the entries that kernels walk, in the order of their tree, if all instances have trees of triangles.
+// Sets the entries that kernels walk, in the order of their tree.
 void set_entries(TopLevel& top, std::span<const Instance> instances, std::span<const InstanceBounds> bounds) {
   std::vector<PlacedEntry> entries;
   entries.reserve(top.tree.order.size());
-  for (const std::uint32_t i : top.tree.order) {
-    if (instances[i].tree == nullptr) return;
+  for (const std::uint32_t i : top.tree.order)
     entries.push_back({{i, instances[i].tree->root}, bounds[i].box});
-  }
   const double least = min_share * half_area_of(top.tree.bounds);
   const auto is_large = [&](const PlacedEntry& entry) { return entry.area > least; };
   const bool opens = entries.size() > 1 && std::ranges::any_of(entries, is_large);
@@ -84,10 +82,9 @@ void set_entries(TopLevel& top, std::span<const Instance> instances, std::span<c
     top.entries.push_back(entries[opens ? top.opened.order[i] : i].entry);
 }
 
-}  // namespace
-
-std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> all) {
-  std::vector<TopLevel> tops;
+// Appends the top levels over instances that have trees of triangles, or over those that have none.
+void append_tops(std::vector<TopLevel>& tops, bool of_triangles, std::span<const Instance> instances,
+                 std::span<const InstanceBounds> all) {
   std::vector<Box> boxes(all.size());
   float least = -1.0f;
   for (const float most : largest_shares) {
@@ -96,7 +93,8 @@ std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<c
     bool has_any = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const InstanceBounds& bounds = all[i];
-      const bool is_in = bounds.share > least && bounds.share <= most && is_visited(bounds.box);
+      const bool is_in = (instances[i].tree != nullptr) == of_triangles && bounds.share > least &&
+                         bounds.share <= most && is_visited(bounds.box);
       boxes[i] = is_in ? bounds.box : empty_box;
       if (!is_in) continue;
       has_any = true;
@@ -108,9 +106,16 @@ std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<c
     if (!has_any) continue;
     top.tree = build_box_tree("scene", boxes, {});
     top.tree.slack = share;
-    set_entries(top, instances, all);
+    if (of_triangles) set_entries(top, instances, all);
     tops.push_back(std::move(top));
   }
+}
+
+}  // namespace
+
+std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> all) {
+  std::vector<TopLevel> tops;
+  for (const bool of_triangles : {true, false}) append_tops(tops, of_triangles, instances, all);
   return tops;
 }
 

@@ -102,6 +102,8 @@ MUTANTS = [
         ('scene: copies walk the instances of the original', 'parts_->set_tops(std::move(parts_->tops));', '')),
     *rows_of('accel/scene/scene_trace.cpp', 'test_scenes',
         ('scene: short lists skip nothing', ' && !skips();', ';'),
+        ('scene: single rays find others again', 'if (top.walked.entries == nullptr) visit_instances(top, true);',
+         'visit_instances(top, false);'),
         ('scene: short lists keep to no side', 'query_.choice.facing == Facing::any && ', ''),
         ('scene: short lists end rays too soon', 'leaf.tmax[k] = std::min(leaf.tmax[k], end);',
          'leaf.tmax[k] = -end;')),
