@@ -57,8 +57,14 @@ void trace_segments(const SceneParts& scene, const Segments& segments, std::span
 
 // The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
 const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
-  const bool is_quick = scene.is_current && scene.tops.empty() && !QuietFloats::are_wanted();
-  return is_quick ? scene.seen_common(mask) : nullptr;
+  if (!scene.is_current || !scene.tops.empty() || QuietFloats::are_wanted()) return nullptr;
+  const CommonTree* only = nullptr;
+  for (const auto& tree : scene.commons) {
+    if (!scene.sees(*tree, mask)) continue;
+    if (only != nullptr) return nullptr;
+    only = tree.get();
+  }
+  return only;
 }
 // Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
 bool is_walked(const SceneParts& scene) {
@@ -67,8 +73,13 @@ bool is_walked(const SceneParts& scene) {
 SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
   const TraversalKernels& kernels = kernels_of(path).traversal;
   SceneHit hit;
-  if (const CommonTree* const tree = scene.seen_common(mask))
-    hit = kernels.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+  for (const auto& tree : scene.commons) {
+    if (!scene.sees(*tree, mask)) continue;
+    Ray rest = ray;
+    if (hit && tmax_behind(hit.t) < ray.tmax) rest.tmax = tmax_behind(hit.t);
+    const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, rest);
+    if (is_before(next, hit)) hit = next;
+  }
   for (const TopLevel& top : scene.tops)
     if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
   if (scene.has_others()) trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, &hit, nullptr});
@@ -76,8 +87,8 @@ SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ra
 }
 bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
                      std::uint32_t mask) {
-  const CommonTree* const tree = scene.seen_common(mask);
-  if (tree != nullptr && row.any(*tree->view, ray)) return true;
+  for (const auto& tree : scene.commons)
+    if (scene.sees(*tree, mask) && row.any(*tree->view, ray)) return true;
   for (const TopLevel& top : scene.tops)
     if (top.walked.entries != nullptr && kernels_of(path).traversal.any_of_instances(top.walked, ray, mask))
       return true;
@@ -189,28 +200,30 @@ Box Scene::bounds() const noexcept {
   const QuietFloats quiet;
   Box all = empty_box;
   for (const TopLevel& top : parts().tops) extend(all, top.tree.bounds);
-  if (parts().traces_common)
-    for (const Member& member : parts().common->members)
+  if (!parts().traces_common) return all;
+  for (const auto& tree : parts().commons)
+    for (const Member& member : tree->members)
       if (!member.is_struck) extend(all, member.box);
   return all;
 }
 std::size_t Scene::bytes() const noexcept {
   std::size_t bytes = parts().instances.size() * sizeof(Instance);
   for (const TopLevel& top : parts().tops) bytes += top.bytes();
-  return parts().common != nullptr ? bytes + parts().common->bytes() : bytes;
+  for (const auto& tree : parts().commons) bytes += tree->bytes();
+  return bytes;
 }
 SceneReport Scene::report() const noexcept {
   SceneReport report;
   for (const auto& geometry : parts().geometries)
     report.mesh_triangles += geometry->mesh_triangles(),
         report.meshes_without_tree += geometry->has_tree() ? 0 : 1;
-  if (parts().common == nullptr) return report;
-  const CommonTree& common = *parts().common;
-  report.common_bytes = common.bytes();
-  if (!parts().traces_common) return report;
-  report.common_triangles = common.triangles - common.struck;
-  for (const Member& member : common.members)
-    if (member.instance != no_part && !member.is_struck) ++report.common_instances;
+  for (const auto& tree : parts().commons) {
+    report.common_bytes += tree->bytes();
+    if (!parts().traces_common) continue;
+    ++report.common_trees;
+    report.common_instances += tree->members_left();
+    report.common_triangles += tree->triangles - tree->struck;
+  }
   return report;
 }
 

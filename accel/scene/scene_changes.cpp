@@ -1,4 +1,6 @@
 // How scenes come about and change.
+#include <algorithm>
+
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
 #include "scene_parts.hpp"
@@ -16,6 +18,35 @@ std::vector<InstanceBounds> bounds_of_instances(const SceneParts& scene) {
   return bounds;
 }
 
+// Takes an instance that gets another mask out of its common tree; the last one takes the tree along. So many may go
+// until the next update, each in a time like that of an update; with one more, all are traced by themselves.
+constexpr std::uint32_t max_let_out = 16;
+
+void let_out(SceneParts& parts, std::shared_ptr<CommonTree>& from, std::uint32_t instance,
+             std::uint32_t mask) {
+  std::vector<InstanceBounds> bounds = bounds_of_instances(parts);
+  if (parts.let_out == max_let_out && from->members_left() > 1) {
+    parts.set_tops(tops_over(parts.instances, bounds));
+    parts.traces_common = false;
+    return;
+  }
+  const std::shared_ptr<CommonTree> tree = from->is_shared ? std::make_shared<CommonTree>(*from) : from;
+  if (tree->members_left() == 1) {
+    tree->mask = mask, from = tree;
+    return;
+  }
+  for (const auto& common : parts.commons)
+    for (const Member& member : common->members)
+      if (member.instance != no_part && !member.is_struck && member.instance != instance)
+        bounds[member.instance] = {empty_box};
+  parts.geometries[parts.instances[instance].geometry]->built(1);
+  parts.set_trees();
+  parts.set_tops(tops_over(parts.instances, bounds));
+  const auto members = std::span(tree->members);
+  tree->strike(*std::ranges::find(members, instance, &Member::instance));
+  from = tree, ++parts.let_out;
+}
+
 const SceneParts no_parts;
 
 }  // namespace
@@ -30,7 +61,7 @@ SceneParts& Scene::changed() {
 }
 Scene::Scene(const Scene& other) : parts_(std::make_unique<SceneParts>(other.parts())) {
   for (const auto& geometry : parts_->geometries) geometry->is_shared = true;
-  if (parts_->common != nullptr) parts_->common->is_shared = true;
+  for (const auto& tree : parts_->commons) tree->is_shared = true;
   parts_->set_tops(std::move(parts_->tops));
 }
 Scene& Scene::operator=(const Scene& other) {
@@ -67,16 +98,15 @@ void Scene::set_moving(std::uint32_t instance, bool moving) {
   else if (standing == Standing::apart)
     standing = Standing::added;
 }
-// The mask of the common tree is that of all its members. If one gets another mask, all are traced each by itself until
-// the next update.
 void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
+  const QuietFloats quiet;
   SceneParts& parts = changed();
   Instance& masked = at("instance", parts.instances, instance);
   if (masked.mask == mask) return;
-  if (parts.is_current && parts.traces_common && parts.common->has(instance)) {
-    parts.set_tops(tops_over(parts.instances, bounds_of_instances(parts)));
-    parts.traces_common = false;
-  }
+  const auto has_it = [&](const auto& tree) { return tree->has(instance); };
+  const auto tree = std::ranges::find_if(parts.commons, has_it);
+  if (parts.is_current && parts.traces_common && tree != parts.commons.end())
+    let_out(parts, *tree, instance, mask);
   masked.mask = mask, masked.standing = left(masked.standing);
 }
 std::uint32_t Scene::geometry_of(std::uint32_t instance) const {
@@ -105,7 +135,8 @@ void Scene::update(int threads) {
   parts.set_trees();
   parts.set_tops(tops_over(parts.instances, bounds));
   common.commit(parts);
-  parts.traces_common = parts.common != nullptr;
+  parts.traces_common = !parts.commons.empty();
+  parts.let_out = 0;
   parts.is_current = true;
 }
 

@@ -20,7 +20,7 @@ struct TopLevel {
 
   std::size_t bytes() const { return tree.bytes() + opened.bytes() + entries.size() * sizeof(InstanceEntry); }
 };
-// Those of triangles first.
+// Top levels of triangles come first.
 std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> bounds);
 
 // An element of a list by its number.
@@ -39,6 +39,11 @@ std::uint32_t next_number(const char* what, const List& list) {
   return static_cast<std::uint32_t>(list.size());
 }
 
+// Whether a hit comes before another one of another instance. A miss comes before nothing.
+inline bool is_before(const SceneHit& hit, const SceneHit& other) {
+  return hit.t < other.t || (hit.t == other.t && hit.instance < other.instance);
+}
+
 // A tree that a caller shares, which must be there.
 template <class Tree>
 std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
@@ -49,17 +54,18 @@ std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
 struct SceneParts {
   std::vector<std::shared_ptr<Geometry>> geometries;
   std::vector<Instance> instances;
-  std::vector<bool> is_changed;        // of geometries: replaced or refitted since the last update
-  std::shared_ptr<CommonTree> common;  // of the last update; null: no instances have one
-  bool traces_common = false;          // whether it is in use
-  // Those of triangles first, then small shares. Each instance that can be hit, and is not in a common tree in use, is
+  std::vector<bool> is_changed;  // of geometries: replaced or refitted since the last update
+  std::vector<std::shared_ptr<CommonTree>> commons;  // of the last update
+  bool traces_common = false;                        // whether they are in use, and there are any
+  std::uint32_t let_out = 0;                         // how many members have left them since
+  // Triangles come first, then small shares. Each instance that can be hit, and is not in a common tree in use, is
   // in one of them.
   std::vector<TopLevel> tops;
   bool is_current = true;  // whether all that is up to date
 
-  // The common tree if rays with this mask are to be traced through it.
-  const CommonTree* seen_common(std::uint32_t of_mask) const {
-    return traces_common && (common->mask & of_mask) != 0 ? common.get() : nullptr;
+  // Whether rays with this mask are to be traced through a common tree.
+  bool sees(const CommonTree& tree, std::uint32_t of_mask) const {
+    return traces_common && (tree.mask & of_mask) != 0;
   }
 
   // Whether it has spheres, primitives of the caller's, or meshes whose trees are not built yet, which no kernel walks.

@@ -24,11 +24,11 @@ class StretchesOfScene {
 
   // The crossings of all rays, in the order of rays, then of instances.
   std::vector<CrossingOfInstance> crossings() {
-    if (const CommonTree* const common = query_.scene.seen_common(query_.mask)) {
-      std::vector<std::uint32_t> all(rays_.size());
-      std::iota(all.begin(), all.end(), 0u);
-      cross(*common->geometry->triangles(), common->numbers(), all, rays_);
-    }
+    std::vector<std::uint32_t> all(rays_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    for (const auto& tree : query_.scene.commons)
+      if (query_.scene.sees(*tree, query_.mask))
+        cross(*tree->geometry->triangles(), tree->numbers(), all, rays_);
     of_instance_.resize(query_.scene.instances.size());
     for (const TopLevel& top : query_.scene.tops) visit_instances(top);
     for (std::uint32_t instance = 0; instance < of_instance_.size(); ++instance)

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -47,11 +48,13 @@ class SceneTracer {
 
   void trace() {
     const std::vector<TopLevel>& tops = query_.scene.tops;
-    const CommonTree* const common = query_.scene.seen_common(query_.mask);
-    if (common != nullptr) {
-      trace_all(*common->geometry, common->numbers(), batch_.rays);
-      return visit_tops(true);
+    bool has_answers = false;
+    for (const auto& tree : query_.scene.commons) {
+      if (!query_.scene.sees(*tree, query_.mask)) continue;
+      has_answers ? trace_further(*tree) : trace_all(*tree->geometry, tree->numbers(), batch_.rays);
+      has_answers = true;
     }
+    if (has_answers) return visit_tops(true);
     if (tops.size() == 1 && refers_to_leaf(tops[0].tree.root)) return trace_only(tops[0].tree.order[0]);
     clear_answers(batch_);
     visit_tops(false);
@@ -85,7 +88,7 @@ class SceneTracer {
     return view;
   }
   // How far each ray goes after the answers so far.
-  const float* rest_of_rays(float* rest) const {
+  float* rest_of_rays(float* rest) const {
     for (std::size_t i = 0; i < batch_.size; ++i) {
       const float end = batch_.hits != nullptr    ? tmax_behind(batch_.hits[i].t)
                         : batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()
@@ -191,21 +194,38 @@ class SceneTracer {
   }
 
   void visit(std::uint32_t number, const VisitedLeaf& leaf) const {
-    const std::uint32_t* const rays = leaf.rays;
-    const std::size_t count = leaf.count;
     const Instance& instance = query_.scene.instances[number];
     if (!is_seen(instance)) return;
-    const Geometry& geometry = *query_.scene.geometries[instance.geometry];
+    const OneMember only(number, instance.geometry);
+    trace_some(*query_.scene.geometries[instance.geometry], only.numbers(),
+               instance.is_identity ? nullptr : instance.inverse, leaf, leaf.count >= min_packets);
+  }
+  // A common tree, after answers from others.
+  void trace_further(const CommonTree& tree) const {
+    Scratch scratch(Scratch::bytes_of<std::uint32_t>(batch_.size) + Scratch::bytes_of<float>(batch_.size));
+    auto* const rays = scratch.take<std::uint32_t>(batch_.size);
+    float* const rest = rest_of_rays(scratch.take<float>(batch_.size));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < batch_.size; ++i)
+      if (rest[i] >= batch_.rays[i].tmin && !std::isnan(batch_.rays[i].tmax))
+        rays[count] = static_cast<std::uint32_t>(i), rest[count++] = rest[i];
+    if (count > 0) trace_some(*tree.geometry, tree.numbers(), nullptr, {0, 0, rays, rest, count}, true);
+  }
+  // The rays of a leaf through a tree, in its space; no inverse: that of the scene.
+  void trace_some(const Geometry& geometry, const MemberNumbers& owners, const double* inverse,
+                  const VisitedLeaf& leaf, bool may_be_packets) const {
+    const std::uint32_t* const rays = leaf.rays;
+    const std::size_t count = leaf.count;
     Scratch scratch(Scratch::bytes_of<Ray>(count) + Scratch::bytes_of<Hit>(count) + bytes_of_options(count));
     auto* const mapped = scratch.take<Ray>(count);
-    if (instance.is_identity)
+    if (inverse == nullptr)
       for (std::size_t k = 0; k < count; ++k) mapped[k] = batch_.rays[rays[k]];
     else
-      query_.kernels.queries.map_rays(batch_.rays, rays, count, instance.inverse, mapped);
+      query_.kernels.queries.map_rays(batch_.rays, rays, count, inverse, mapped);
     detail::RayNumbers numbers = batch_.numbers;
     numbers.picked = rays;
-    GeometryBatch part = batch_of(mapped, count, numbers, number);
-    part.may_be_packets = count >= min_packets;
+    GeometryBatch part = batch_of(mapped, count, numbers, owners.members[0].instance);
+    part.may_be_packets = may_be_packets;
     if (geometry.keeps_ends())
       part.tmax = leaf.tmax;
     else
@@ -214,20 +234,21 @@ class SceneTracer {
       part.hits = scratch.take<Hit>(count);
     else
       part.occluded = scratch.take<std::uint8_t>(count);
-    set_options(part, OneMember(number, instance.geometry).numbers(), rays, scratch);
+    set_options(part, owners, rays, scratch);
     geometry.trace(query_, part);
     if (batch_.hits != nullptr)
-      keep_hits(number, leaf, part);
+      keep_hits(owners.owners, leaf, part);
     else
       keep_occluded(leaf, part);
   }
 
-  void keep_hits(std::uint32_t number, const VisitedLeaf& leaf, const GeometryBatch& part) const {
+  void keep_hits(const TriangleOwners& owners, const VisitedLeaf& leaf, const GeometryBatch& part) const {
     for (std::size_t k = 0; k < part.size; ++k) {
-      const Hit& hit = part.hits[k];
+      if (!part.hits[k]) continue;
+      const SceneHit hit = owners.spread(part.hits[k]);
       SceneHit& best = batch_.hits[leaf.rays[k]];
-      if (!hit || !(hit.t < best.t || (hit.t == best.t && number < best.instance))) continue;
-      best = wide(hit, number);
+      if (!is_before(hit, best)) continue;
+      best = hit;
       leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(hit.t));
     }
   }
@@ -237,9 +258,6 @@ class SceneTracer {
       batch_.occluded[leaf.rays[k]] = 1;
       leaf.tmax[k] = -std::numeric_limits<float>::infinity();
     }
-  }
-  SceneHit wide(const Hit& hit, std::uint32_t number) const {
-    return {hit.t, hit.u, hit.v, hit.primitive, query_.scene.instances[number].geometry, number};
   }
 
   const SceneQuery& query_;

@@ -32,9 +32,10 @@ using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std
 
 /// How a scene is traced, as Scene::report() says.
 struct SceneReport {
-  std::size_t common_instances = 0;  ///< instances in the common tree
+  std::size_t common_trees = 0;      ///< the number of common trees
+  std::size_t common_instances = 0;  ///< instances in common trees
   std::size_t common_triangles = 0;  ///< their triangles
-  std::size_t common_bytes = 0;      ///< the memory of the common tree, besides the trees of geometries
+  std::size_t common_bytes = 0;      ///< the memory of the common trees, besides the trees of geometries
   std::size_t mesh_triangles = 0;    ///< the triangles of all geometries
   std::size_t meshes_without_tree =
       0;  ///< geometries added as meshes that needed no tree of their own so far
@@ -63,25 +64,28 @@ struct SceneStretch;
 /// is below 2^-126 there, unless the instance's transform is the identity.
 ///
 /// Meshes that stand where they were made are traced as one tree, as fast as one Bvh of them. The call update() builds
-/// this common tree over the triangles of the instances whose transform is the identity and whose mask is the most
-/// frequent one. Results do not depend on it. The rules keep update() short in scenes that change:
-/// - An instance that changes after its first update(), by move(), set_mask(), refit() or replace(), leaves the common
-///   tree at the next update(), for good. Its triangles are struck out of the tree.
-/// - A new instance is traced by itself until a quarter of the common tree's triangles is new or has left. Then
-///   update() builds the tree again.
-/// - The tree has at most twice the triangles of the geometries. Further instances are traced by themselves.
+/// this common tree over the triangles of the instances whose transform is the identity. If their masks differ, each
+/// mask has a tree of its own, up to four trees. A ray goes through all trees that its mask sees. Results do not depend
+/// on these trees. The rules keep update() short in scenes that change:
+/// - A mask keeps its tree as long as instances are left in it. New trees go to the masks of most triangles. Instances
+///   of further masks are traced by themselves until a tree becomes free.
+/// - An instance that changes after its first update(), by move(), set_mask(), refit() or replace(), leaves its common
+///   tree at the next update(), for good. Its triangles are struck out of the tree. set_mask() does so at once.
+/// - A new instance is traced by itself until a quarter of its mask's tree is new or has left. Then update() builds
+///   that tree again.
+/// - All trees have at most twice the triangles of the geometries. Further instances are traced by themselves.
 /// - set_moving() keeps an instance out, or lets it in again.
 /// - A tree of one instance is that of its geometry. So an instance alone in a scene costs nothing, nor does the only
-///   one that may be in the tree, if its box has a quarter of the scene's surface.
+///   one of its mask that may be in a tree, if its box has a quarter of the scene's surface.
 ///
-/// The common tree takes the memory of a Bvh of its triangles, besides geometries. These need no trees of their own if
+/// Common trees take the memory of a Bvh of their triangles, besides geometries. These need no trees of their own if
 /// they are added as vertices and triangles. The build takes 48 bytes a triangle more, and uses the builder of the
 /// largest geometry in the tree.
 class Scene {
  public:
   /// Makes an empty scene.
   Scene();
-  /// Copies a scene. Both share their geometries and the common tree, so a copy takes the memory of bytes() without
+  /// Copies a scene. Both share their geometries and the common trees, so a copy takes the memory of bytes() without
   /// SceneReport::common_bytes. A change in one of them makes a tree of its own, and changes nothing in the other. Many
   /// threads may copy one object at the same time.
   Scene(const Scene&);
@@ -96,9 +100,9 @@ class Scene {
   /// Throws std::length_error for more than 2^28 geometries.
   std::uint32_t add(Bvh tree);
   /// Adds a mesh, which the scene copies, and whose tree is built when it is first needed; returns the index of the
-  /// geometry. Instances in the common tree need none, so nothing is built or stored twice: a mesh takes 12 bytes a
+  /// geometry. Instances in common trees need none, so nothing is built or stored twice: a mesh takes 12 bytes a
   /// vertex and 12 a triangle. update() builds the trees of the other instances. Otherwise the first call that needs
-  /// the tree builds it on one thread: tree(), save(), normals(), closest_crossing(), and queries after set_mask().
+  /// the tree builds it on one thread: tree(), save(), normals(), closest_crossing(), set_mask() and queries after it.
   /// Many threads may make that call at the same time. Throws as the constructor of Bvh does.
   std::uint32_t add(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   /// Adds a mesh as its vertices and triangles.
@@ -149,11 +153,13 @@ class Scene {
   std::uint32_t place(std::uint32_t geometry, const Transform& transform = {}, std::uint32_t mask = ~0u);
   /// Gives an instance another transform. Throws std::out_of_range if there is no such instance.
   void move(std::uint32_t instance, const Transform& transform);
-  /// Gives an instance another mask, at once, without update(). If the instance is in the common tree, rays go through
-  /// each instance by itself until the next update(), which is slower. The first such call then takes 0.1 µs for each
-  /// instance. Throws std::out_of_range if there is no such instance.
+  /// Gives an instance another mask, at once, without update(). If the instance is in a common tree, it is struck out
+  /// and traced by itself. Such a call takes the time of an update(): 0.1 µs for each instance, less than a millisecond
+  /// for 1,000 triangles, and the build of the geometry's tree if it has none. From the 17th such call after an
+  /// update() on, rays go through each instance by itself until the next update(), which is slower.
+  /// Throws std::out_of_range if there is no such instance. Strong exception guarantee, as for update().
   void set_mask(std::uint32_t instance, std::uint32_t mask);
-  /// Says that an instance will move, or change otherwise, so that it is not in the common tree from the next update()
+  /// Says that an instance will move, or change otherwise, so that it is in no common tree from the next update()
   /// on; or, with false, that it will no longer. Throws as move() does.
   void set_moving(std::uint32_t instance, bool moving = true);
   /// Returns the geometry of an instance. Throws as move() does.
@@ -164,11 +170,11 @@ class Scene {
   std::uint32_t mask_of(std::uint32_t instance) const;
   std::size_t instance_count() const noexcept;  ///< the number of instances
 
-  /// Makes the scene ready for queries. Builds the tree over the instances again, in about 0.1 µs for each. Builds the
-  /// common tree where the rules of the class say so, in the time of a Bvh of its triangles. An instance of 1,000
-  /// triangles is struck out of the common tree in less than a millisecond. If a copy of the scene has that tree, too,
+  /// Makes the scene ready for queries. Builds the tree over the instances again, in about 0.1 µs for each. Builds
+  /// common trees where the rules of the class say so, in the time of a Bvh of their triangles. An instance of 1,000
+  /// triangles is struck out of a common tree in less than a millisecond. If a copy of the scene has that tree, too,
   /// it is copied first. Large instances that overlap are opened for calls with one ray, in up to 0.5 ms.
-  /// `threads` is as in TraceOptions, for the common tree and the trees of meshes.
+  /// `threads` is as in TraceOptions, for common trees and the trees of meshes.
   /// Throws std::invalid_argument if the thread count is negative. Strong exception guarantee: if this throws, the
   /// scene is unchanged.
   void update(int threads = 1);
@@ -286,7 +292,7 @@ class Scene {
   Box bounds() const noexcept;
   /// Returns the bytes of the instances, the tree over them and the common tree, without geometries.
   std::size_t bytes() const noexcept;
-  /// Returns what the common tree holds: no instances from a set_mask() of a member to the next update().
+  /// Returns what the common trees hold: nothing from the 17th set_mask() of a member to the next update().
   SceneReport report() const noexcept;
 
  private:

@@ -84,6 +84,7 @@ py::tuple corners_of(const Box& box) {
 py::dict report_of_scene(const SharedScene& shared) {
   const SceneReport report = shared.state->report();
   py::dict all;
+  all["common_trees"] = to_python(report.common_trees);
   all["common_instances"] = to_python(report.common_instances);
   all["common_triangles"] = to_python(report.common_triangles);
   all["common_bytes"] = to_python(report.common_bytes);

@@ -287,19 +287,21 @@ class Scene(SceneQueries, Stored):
         self._tree.update(threads_of(threads))
 
     def report(self):
-        """Describe how the scene is traced: the common tree of meshes that stand where they were made.
+        """Describe how the scene is traced: the common trees of meshes that stand where they were made.
 
         Returns
         -------
         dict
-            common_instances: instances in it, none while it is out of use after set_mask(). common_triangles: their
-            triangles. common_bytes: its memory, besides that of the geometries' trees. mesh_triangles: triangles of all
-            geometries. meshes_without_tree: meshes that needed no tree of their own so far.
+            common_trees: one for each mask, up to four; none while they are out of use after set_mask().
+            common_instances: instances in them. common_triangles: their triangles. common_bytes: their memory, besides
+            that of the geometries' trees. mesh_triangles: triangles of all geometries. meshes_without_tree: meshes that
+            needed no tree of their own so far.
 
         Examples
         --------
         >>> sorted(scene.report())
-        ['common_bytes', 'common_instances', 'common_triangles', 'mesh_triangles', 'meshes_without_tree']
+        ['common_bytes', 'common_instances', 'common_trees', 'common_triangles', 'mesh_triangles',
+         'meshes_without_tree']
         """
         return self._tree.report()
 

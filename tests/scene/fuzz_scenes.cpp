@@ -29,6 +29,13 @@ Transform any_transform(Bytes& bytes, Coordinates& coordinates) {
   return transform;
 }
 
+// Often one that others have.
+std::uint32_t any_mask(Bytes& bytes) {
+  return bytes.chance(100)   ? ~0u
+         : bytes.chance(200) ? static_cast<std::uint32_t>(bytes.below(5))
+                             : bytes.byte();
+}
+
 void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vector<SceneHit>& expected,
                  const TraceOptions& options, std::uint32_t mask) {
   static Fence fence(max_rays * sizeof(SceneHit)), byte_fence(max_rays);
@@ -189,7 +196,7 @@ void change_some(Bytes& bytes, Coordinates& coordinates, Scene& scene, const Mes
     if (kind == 3) scene.place(geometry);
     if (kind == 4) scene.refit(geometry, meshes[geometry].vertices, meshes[geometry].triangles);
     if (kind < 4 || bytes.chance(128)) scene.update();
-    if (kind == 5) scene.set_mask(instance, bytes.chance(128) ? ~0u : bytes.byte());
+    if (kind == 5) scene.set_mask(instance, any_mask(bytes));
   }
   const Scene copy = scene;
   if (bytes.chance(128)) scene.update();
@@ -218,7 +225,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   const std::size_t instances = bytes.below(bytes.chance(64) ? 60 : 4);
   for (std::size_t i = 0; i < instances; ++i)
     scene.place(static_cast<std::uint32_t>(bytes.below(2)), any_transform(bytes, coordinates),
-                bytes.chance(128) ? ~0u : bytes.byte());
+                any_mask(bytes));
   scene.update();
   if (instances > 0 && bytes.chance(128)) change_some(bytes, coordinates, scene, meshes);
   if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));

@@ -35,14 +35,25 @@ Hit MemberNumbers::after(const SceneHit& last) const {
 }
 
 CommonTree::CommonTree(const CommonTree& other)
-    : own(std::make_shared<Bvh>(TreeOf::copy(*other.own))),
+    : geometry(other.geometry),
+      own(other.own != nullptr ? std::make_shared<Bvh>(TreeOf::copy(*other.own)) : nullptr),
+      view(other.view),
       members(other.members),
       slots(other.slots),
       shift(other.shift),
       mask(other.mask),
       triangles(other.triangles),
       struck(other.struck) {
-  geometry = geometry_of_triangles(own), view = TreeOf::ready(*own);
+  if (own != nullptr) geometry = geometry_of_triangles(own), view = TreeOf::ready(*own);
+}
+
+std::size_t CommonTree::members_left() const {
+  return static_cast<std::size_t>(std::ranges::count(members, false, &Member::is_struck)) - 1;
+}
+
+void CommonTree::strike(Member& member) noexcept {
+  TreeOf::strike(*own, member.box, member.first, (&member)[1].first);
+  member.is_struck = true, struck += member.triangles;
 }
 
 std::size_t CommonTree::bytes() const {

@@ -1,4 +1,4 @@
-// One tree over the meshes of a scene that stand where they were made.
+// Trees over the meshes of a scene that stand where they were made, one for each mask.
 #pragma once
 
 #include <algorithm>
@@ -52,28 +52,41 @@ struct CommonTree {
   std::vector<Member> members;               // as in MemberNumbers
   std::vector<TriangleOwner> slots;
   unsigned shift = 31;                    // above all numbers of an only member
-  std::uint32_t mask = ~0u;               // of each member
+  std::uint32_t mask = ~0u;               // of each member that is left
   std::size_t triangles = 0, struck = 0;  // of all members; of those that have left
   // Whether a copy of the scene has it, too. Then nothing changes it.
   std::atomic<bool> is_shared{false};
 
   CommonTree() = default;
-  CommonTree(const CommonTree& other);  // with a tree of its own
+  CommonTree(const CommonTree& other);  // with a tree of its own, if the other one has one
 
   MemberNumbers numbers() const { return {members, {slots.data(), shift}}; }
   bool has(std::uint32_t instance) const {
     const Member& member = numbers().from(instance);
     return member.instance == instance && !member.is_struck;
   }
+  std::size_t members_left() const;
+  // Takes the triangles of a member out of the tree.
+  void strike(Member& member) noexcept;
   std::size_t bytes() const;
+};
+
+// The instances of one mask that have a tree in common, or are to have one: what it was before the update, and then
+// what it is after it. Numbers are of triangles.
+struct CommonGroup {
+  std::uint32_t mask;
+  std::shared_ptr<CommonTree> tree = nullptr;
+  std::size_t staying = 0, waiting = 0, leaving = 0;
+
+  bool keeps_tree() const { return staying > 0 && 4 * (tree->struck + leaving + waiting) <= tree->triangles; }
 };
 
 struct SceneParts;
 
-// The part of update() that makes the common tree.
+// The part of update() that makes the common trees.
 class CommonUpdate {
  public:
-  // bounds[i] is where instance i may be hit. Builds or copies a tree where one is needed; the scene stays as it is.
+  // bounds[i] is where instance i may be hit. Builds or copies trees where they are needed; the scene stays as it is.
   CommonUpdate(const SceneParts& scene, std::span<const InstanceBounds> bounds, int threads);
   // Whether the instance is a member after the update.
   bool has(std::size_t instance) const { return is_member_[instance] != 0; }
@@ -83,21 +96,22 @@ class CommonUpdate {
   std::size_t triangles_of(std::size_t instance) const;
   bool may_be_member(std::size_t instance) const;
   void look_at_instances();
-  void choose_mask();
-  bool keeps_tree() const;
-  void keep_tree();
-  std::vector<std::uint32_t> chosen_members();
-  std::vector<std::uint32_t> only_instance() const;
+  bool has_only_instance();
+  void add_groups_of_trees();
+  void add_groups_of_waiting();
+  void keep_tree(CommonGroup& group);
+  std::vector<std::uint32_t> chosen_members(std::uint32_t mask);
   bool fills_scene(std::size_t instance) const;
-  void set_tree(const std::vector<std::uint32_t>& chosen, int threads);
+  void set_tree(CommonGroup& group, const std::vector<std::uint32_t>& chosen, int threads);
 
   const SceneParts& scene_;
   std::span<const InstanceBounds> bounds_;
+  Box box_ = empty_box;             // of all instances
   std::vector<Standing> standing_;  // of each instance, after the update
   std::vector<char> is_member_;
-  std::size_t staying_ = 0, waiting_ = 0, leaving_ = 0;  // triangles
-  std::uint32_t mask_ = ~0u;
-  std::shared_ptr<CommonTree> tree_;
+  std::vector<CommonGroup> groups_;
+  std::size_t placed_ = 0;  // triangles in the trees so far
+  std::vector<std::shared_ptr<CommonTree>> trees_;
 };
 
 }  // namespace raylanes

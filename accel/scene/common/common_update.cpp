@@ -1,6 +1,7 @@
-// Which instances have a tree in common. It is built again only if a quarter of its triangles has changed: a part that
-// moves, or one that is added, does not cost a build of all others.
+// Which instances have trees in common, one for each mask in use, up to max_groups. A tree is built again only if a
+// quarter of its triangles has changed: a part that moves, or one that is added, does not cost a build of all others.
 #include <bit>
+#include <functional>
 #include <map>
 #include <numeric>
 
@@ -11,6 +12,9 @@
 
 namespace raylanes {
 namespace {
+
+// Each ray goes through all trees that its mask sees, from their roots.
+constexpr std::size_t max_groups = 4;
 
 // The numbers of a slot, as a power of two: members begin at multiples of it. Unused numbers are a sixteenth of all on
 // average, an eighth at most.
@@ -41,8 +45,13 @@ Bvh united(const SceneParts& scene, std::span<const Member> members, int threads
 CommonUpdate::CommonUpdate(const SceneParts& scene, std::span<const InstanceBounds> bounds, int threads)
     : scene_(scene), bounds_(bounds), standing_(bounds.size()), is_member_(bounds.size()) {
   look_at_instances();
-  choose_mask();
-  keeps_tree() ? keep_tree() : set_tree(chosen_members(), threads);
+  if (!has_only_instance()) add_groups_of_trees(), add_groups_of_waiting();
+  for (CommonGroup& group : groups_) {
+    group.keeps_tree() ? keep_tree(group) : set_tree(group, chosen_members(group.mask), threads);
+    if (group.tree != nullptr) placed_ += group.tree->triangles, trees_.push_back(group.tree);
+  }
+  // Most hits first: they end rays to the others.
+  std::ranges::stable_sort(trees_, std::greater<>(), [](const auto& tree) { return tree->triangles; });
 }
 
 std::size_t CommonUpdate::triangles_of(std::size_t instance) const {
@@ -61,75 +70,86 @@ void CommonUpdate::look_at_instances() {
     if (scene_.is_changed[instance.geometry]) standing = left(standing);
     if (standing == Standing::added || standing == Standing::waiting)
       standing = may_be_member(i) ? Standing::waiting : Standing::apart;
-    if (standing == Standing::common) staying_ += triangles_of(i);
+    if (is_visited(bounds_[i].box)) extend(box_, bounds_[i].box);
   }
-  if (scene_.common == nullptr) return;
-  for (const Member& member : scene_.common->members)
-    if (member.instance != no_part && !member.is_struck && standing_[member.instance] != Standing::common)
-      leaving_ += member.triangles;
 }
 
-// One tree has one mask: that of the most triangles.
-void CommonUpdate::choose_mask() {
-  std::map<std::uint32_t, std::size_t> triangles;
-  for (std::size_t i = 0; i < standing_.size(); ++i)
-    if (standing_[i] == Standing::waiting) triangles[scene_.instances[i].mask] += triangles_of(i);
-  if (staying_ > 0)
-    mask_ = scene_.common->mask;
-  else if (!triangles.empty())
-    mask_ =
-        std::ranges::max_element(triangles, {}, [](const auto& of_mask) { return of_mask.second; })->first;
-  for (std::size_t i = 0; i < standing_.size(); ++i)
-    if (standing_[i] == Standing::waiting && scene_.instances[i].mask != mask_)
-      standing_[i] = Standing::apart;
-  waiting_ = triangles[mask_];
+// An instance that is alone in the scene may be traced by its tree as it is, whatever becomes of it.
+bool CommonUpdate::has_only_instance() {
+  std::size_t only = 0, visited = 0;
+  for (std::size_t i = 0; i < bounds_.size() && visited < 2; ++i)
+    if (is_visited(bounds_[i].box)) only = i, ++visited;
+  if (visited != 1 || !may_be_member(only)) return false;
+  CommonGroup group{scene_.instances[only].mask};
+  set_tree(group, {static_cast<std::uint32_t>(only)}, 1);
+  trees_.push_back(group.tree);
+  if (standing_[only] == Standing::waiting) standing_[only] = Standing::common;
+  return true;
 }
 
-bool CommonUpdate::keeps_tree() const {
-  return staying_ > 0 && 4 * (scene_.common->struck + leaving_ + waiting_) <= scene_.common->triangles;
+void CommonUpdate::add_groups_of_trees() {
+  for (const std::shared_ptr<CommonTree>& tree : scene_.commons) {
+    CommonGroup group{tree->mask, tree};
+    for (const Member& member : tree->members) {
+      if (member.instance == no_part || member.is_struck) continue;
+      (standing_[member.instance] == Standing::common ? group.staying : group.leaving) += member.triangles;
+    }
+    if (group.staying > 0) groups_.push_back(std::move(group));
+  }
 }
 
-void CommonUpdate::keep_tree() {
-  for (std::size_t i = 0; i < standing_.size(); ++i) is_member_[i] = standing_[i] == Standing::common;
-  tree_ = scene_.common;
-  if (leaving_ > 0 && tree_->is_shared) tree_ = std::make_shared<CommonTree>(*tree_);
+// New groups have the most triangles. One instance makes a group if most rays meet it anyway.
+void CommonUpdate::add_groups_of_waiting() {
+  std::map<std::uint32_t, CommonGroup> waiting;
+  std::map<std::uint32_t, std::size_t> worth;
+  for (std::size_t i = 0; i < standing_.size(); ++i) {
+    if (standing_[i] != Standing::waiting) continue;
+    const std::uint32_t mask = scene_.instances[i].mask;
+    worth[mask] += waiting.contains(mask) || fills_scene(i) ? 1 : 0;
+    CommonGroup& group = waiting[mask];
+    group.mask = mask, group.waiting += triangles_of(i);
+  }
+  for (CommonGroup& group : groups_)
+    if (const auto found = waiting.extract(group.mask)) group.waiting = found.mapped().waiting;
+  std::vector<CommonGroup> others;
+  for (const auto& [mask, group] : waiting)
+    if (worth[mask] > 0) others.push_back(group);
+  std::ranges::stable_sort(others, std::greater<>(), &CommonGroup::waiting);
+  others.resize(std::min(others.size(), max_groups - groups_.size()));
+  groups_.insert(groups_.end(), others.begin(), others.end());
+}
+
+void CommonUpdate::keep_tree(CommonGroup& group) {
+  for (const Member& member : group.tree->members)
+    if (member.instance != no_part && !member.is_struck)
+      is_member_[member.instance] = standing_[member.instance] == Standing::common;
+  if (group.leaving > 0 && group.tree->is_shared) group.tree = std::make_shared<CommonTree>(*group.tree);
 }
 
 // The members of a new tree, which is at most twice as large as the geometries: few are placed twice.
-std::vector<std::uint32_t> CommonUpdate::chosen_members() {
+std::vector<std::uint32_t> CommonUpdate::chosen_members(std::uint32_t mask) {
   std::vector<std::uint32_t> chosen;
   std::size_t triangles = 0, most = 0;
   for (const auto& geometry : scene_.geometries) most += 2 * geometry->mesh_triangles();
   for (std::size_t i = 0; i < standing_.size(); ++i) {
     if (standing_[i] != Standing::common && standing_[i] != Standing::waiting) continue;
+    if (scene_.instances[i].mask != mask) continue;
     const std::size_t with_it = triangles + triangles_of(i);
-    const bool fits = with_it <= most && with_it + with_it / 8 <= max_mesh_triangles;
+    const bool fits = placed_ + with_it <= most && with_it + with_it / 8 <= max_mesh_triangles;
     standing_[i] = fits ? Standing::common : Standing::apart;
     if (fits) triangles = with_it, chosen.push_back(static_cast<std::uint32_t>(i));
   }
-  if (chosen.empty()) return only_instance();
-  if (chosen.size() == 1 && !fills_scene(chosen[0])) {
-    standing_[chosen[0]] = Standing::waiting;
-    return {};
-  }
-  return chosen;
+  if (chosen.size() != 1 || fills_scene(chosen[0])) return chosen;
+  standing_[chosen[0]] = Standing::waiting;
+  return {};
 }
-// The instance that is alone in the scene, if its tree may serve as it is, whatever becomes of it.
-std::vector<std::uint32_t> CommonUpdate::only_instance() const {
-  std::vector<std::uint32_t> visited;
-  for (std::size_t i = 0; i < bounds_.size() && visited.size() < 2; ++i)
-    if (is_visited(bounds_[i].box)) visited.push_back(static_cast<std::uint32_t>(i));
-  return visited.size() == 1 && may_be_member(visited[0]) ? visited : std::vector<std::uint32_t>();
-}
-// Whether most rays meet it: all are traced through the common tree first.
+// Whether most rays meet it.
 bool CommonUpdate::fills_scene(std::size_t instance) const {
-  Box all = empty_box;
-  for (const InstanceBounds& bounds : bounds_)
-    if (is_visited(bounds.box)) extend(all, bounds.box);
-  return 4.0 * half_area_of(bounds_[instance].box) >= half_area_of(all);
+  return 4.0 * half_area_of(bounds_[instance].box) >= half_area_of(box_);
 }
 
-void CommonUpdate::set_tree(const std::vector<std::uint32_t>& chosen, int threads) {
+void CommonUpdate::set_tree(CommonGroup& group, const std::vector<std::uint32_t>& chosen, int threads) {
+  group.tree = nullptr;
   if (chosen.empty()) return;
   auto tree = std::make_shared<CommonTree>();
   for (const std::uint32_t i : chosen) tree->triangles += triangles_of(i);
@@ -145,24 +165,21 @@ void CommonUpdate::set_tree(const std::vector<std::uint32_t>& chosen, int thread
     first += slots << tree->shift;
   }
   tree->members.push_back({{first, no_part, no_part}});
-  tree->mask = scene_.instances[chosen[0]].mask;
+  tree->mask = group.mask;
   const std::shared_ptr<Geometry>& alone = scene_.geometries[tree->members[0].geometry];
   if (chosen.size() > 1) tree->own = std::make_shared<Bvh>(united(scene_, tree->members, threads));
   tree->geometry = tree->own != nullptr ? geometry_of_triangles(tree->own) : alone;
   tree->view = TreeOf::ready(*tree->geometry->triangles());
-  tree_ = std::move(tree);
+  group.tree = std::move(tree);
 }
 
 void CommonUpdate::commit(SceneParts& scene) noexcept {
-  if (tree_ != nullptr)
-    for (Member& member : std::span(tree_->members).first(tree_->members.size() - 1)) {
-      if (member.is_struck || has(member.instance)) continue;
-      TreeOf::strike(*tree_->own, member.box, member.first, (&member)[1].first);
-      member.is_struck = true, tree_->struck += member.triangles;
-    }
+  for (const std::shared_ptr<CommonTree>& tree : trees_)
+    for (Member& member : std::span(tree->members).first(tree->members.size() - 1))
+      if (!member.is_struck && !has(member.instance)) tree->strike(member);
   for (std::size_t i = 0; i < standing_.size(); ++i) scene.instances[i].standing = standing_[i];
   std::fill(scene.is_changed.begin(), scene.is_changed.end(), false);
-  scene.common = std::move(tree_);
+  scene.commons = std::move(trees_);
 }
 
 }  // namespace raylanes

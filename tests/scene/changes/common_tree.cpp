@@ -40,7 +40,8 @@ class Changing {
  public:
   TriangleParts parts;
 
-  Changing(std::size_t count, std::uint64_t seed) : random_(seed) {
+  // So many of seven parts have masks of their own.
+  Changing(std::size_t count, std::uint64_t seed, std::size_t masked = 1) : random_(seed), masked_(masked) {
     for (std::size_t i = 0; i < count; ++i) place();
   }
   void place() {
@@ -52,7 +53,7 @@ class Changing {
                                                      r.index(std::min<std::size_t>(parts.meshes.size(), 3)));
     const Transform transform = r.index(6) == 0 ? random_transform(r, 1, 1) : Transform();
     const std::uint32_t number = parts.scene.place(
-        geometry, transform, r.index(7) == 0 ? 1u + static_cast<std::uint32_t>(r.index(3)) : ~0u);
+        geometry, transform, r.index(7) < masked_ ? 1u + static_cast<std::uint32_t>(r.index(5)) : ~0u);
     if (r.index(9) == 0) parts.scene.set_moving(number);
   }
   // Returns whether the change is seen at once.
@@ -88,6 +89,7 @@ class Changing {
 
  private:
   Random random_;
+  const std::size_t masked_;
 };
 
 // Next hits, skipped ones, sides and passages, by each instance's own tree.
@@ -124,7 +126,7 @@ TEST(CommonTree, has_the_hits_of_all_instances_whatever_changes) {
   Random random(801);
   for (const std::size_t count : {0, 1, 2, 3, 12, 40, 150}) {
     SCOPED_TRACE(std::to_string(count) + " parts");
-    Changing changing(count, 802 + count);
+    Changing changing(count, 802 + count, count % 5 + 1);
     changing.parts.scene.update();
     const std::vector<Ray> rays = rays_at_patches(by_level<std::size_t>(60, 200, 600), random);
     for (std::size_t step = 0; step < by_level<std::size_t>(4, 12, 40); ++step) {
@@ -192,11 +194,12 @@ TEST(CommonTree, loses_what_changes_and_takes_in_what_is_new_by_quarters) {
   scene.move(7, {}), scene.update();  // and back: it stays apart
   expect_report(scene, 39);
   scene.set_mask(8, 1);
-  expect_report(scene, 0);  // until the next update
+  expect_report(scene, 38);
   EXPECT_EQ(scene.closest(ray_at_cube(8), {}, 2).instance, no_part);
   EXPECT_EQ(scene.closest(ray_at_cube(8), {}, 1).instance, 8u);
   scene.update();
   expect_report(scene, 38);
+  EXPECT_EQ(scene.report().common_bytes, bytes) << "it was built again";
   scene.set_moving(9);
   scene.refit(10, cube(0, 1).vertices, cube(0, 1).triangles);
   scene.replace(11, Bvh());
@@ -213,6 +216,81 @@ TEST(CommonTree, loses_what_changes_and_takes_in_what_is_new_by_quarters) {
   expect_report(scene, 33);
   for (std::uint32_t i = 0; i < 12; ++i)
     EXPECT_EQ(scene.closest(ray_at_cube(i)).instance, i == 10 || i == 11 ? no_part : i) << i;
+}
+
+// Cubes of these masks, one after the other.
+Scene masked_cubes(std::uint32_t count, const std::vector<std::uint32_t>& masks) {
+  Scene scene = cubes(count);
+  for (std::uint32_t i = 0; i < count; ++i)
+    scene.move(i, {}), scene.set_mask(i, masks[i % masks.size()]), scene.set_moving(i, false);
+  scene.update();
+  return scene;
+}
+
+TEST(CommonTree, is_one_for_each_of_four_masks) {
+  Scene scene = masked_cubes(60, {1, 2, 4, 8, 1, 2, 4, 8, 1, 16});
+  EXPECT_EQ(scene.report().common_trees, 4u);
+  expect_report(scene, 54);  // the fifth mask has none
+  for (std::uint32_t i = 0; i < 60; ++i)
+    for (const std::uint32_t mask : {1u, 2u, 5u, 8u, 16u, 31u})
+      EXPECT_EQ(scene.closest(ray_at_cube(i), {}, mask).instance,
+                (scene.mask_of(i) & mask) != 0 ? i : no_part);
+  const std::size_t bytes = scene.report().common_bytes;
+  for (std::uint32_t i : {0u, 1u, 2u}) scene.move(i, moved_by(0, 0, 1));
+  for (std::uint32_t i = 0; i < 3; ++i) scene.place(3, {}, 8);
+  scene.update();
+  expect_report(scene, 51);  // all trees are kept
+  EXPECT_EQ(scene.report().common_bytes, bytes);
+  scene.place(3, {}, 8), scene.update();
+  expect_report(scene, 55);  // one is built again
+  for (std::uint32_t i = 0; i < 60; ++i)
+    if (scene.mask_of(i) == 2) scene.set_moving(i);
+  scene.update();
+  EXPECT_EQ(scene.report().common_trees, 4u);  // the fifth mask takes the place of the second
+  for (std::uint32_t i = 0; i < 60; ++i) EXPECT_EQ(scene.closest(ray_at_cube(i)).instance, i);
+}
+
+TEST(CommonTree, lets_instances_with_other_masks_out_at_once) {
+  Scene scene = masked_cubes(100, {1, 2, 2, 2});
+  const Scene copy = scene;
+  EXPECT_EQ(scene.report().common_trees, 2u);
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    scene.set_mask(i, 4);
+    expect_report(scene, 99 - i);
+  }
+  EXPECT_EQ(scene.report().common_trees, 2u);
+  EXPECT_EQ(scene.closest(ray_at_cube(3), {}, 3).instance, no_part);
+  scene.set_mask(16, 4);
+  EXPECT_EQ(scene.report().common_trees, 0u);
+  scene.set_mask(17, 4);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(scene.closest(ray_at_cube(i), {}, 4).instance, i < 18 ? i : no_part);
+    EXPECT_EQ(copy.closest(ray_at_cube(i), {}, 3).instance, i);
+  }
+  scene.update();
+  expect_report(scene, 82);
+  scene.set_mask(18, 1);
+  expect_report(scene, 81);
+}
+
+// The last instance of a tree takes it along, also where a copy has it.
+TEST(CommonTree, goes_with_its_last_instance) {
+  Scene scene = masked_cubes(2, {1, 2});
+  EXPECT_EQ(scene.report().common_trees, 2u);
+  const Scene copy = scene;
+  scene.set_mask(0, 4), scene.set_mask(0, 8);
+  EXPECT_EQ(scene.report().common_instances, 2u);
+  for (const std::uint32_t mask : {1u, 4u, 8u}) {
+    EXPECT_EQ(scene.closest(ray_at_cube(0), {}, mask).instance, mask == 8 ? 0u : no_part);
+    EXPECT_EQ(copy.closest(ray_at_cube(0), {}, mask).instance, mask == 1 ? 0u : no_part);
+  }
+  scene.set_mask(0, 2), scene.update();
+  EXPECT_EQ(scene.closest(ray_at_cube(0), {}, 2).instance, 0u);
+  EXPECT_EQ(scene.closest(ray_at_cube(0), {}, 1).instance, no_part);
+  Scene one = cubes(1);
+  one.set_mask(0, 1);
+  expect_report(one, 1, false);
+  EXPECT_EQ(one.closest(ray_at_cube(0), {}, 2).instance, no_part);
 }
 
 TEST(CommonTree, of_one_is_that_of_its_geometry) {

@@ -109,7 +109,7 @@ TEST(Mixed, has_top_levels_of_triangles_and_of_others) {
   EXPECT_TRUE(tops[1].entries.empty());
 }
 
-// What stands and what is walked by kernels traces no more rays to others than come before its hits.
+// Rays come to others only up to the hits of triangles.
 TEST(Mixed, ends_rays_to_others_at_hits_of_triangles) {
   MixedParts parts;
   std::size_t tests = 0;
