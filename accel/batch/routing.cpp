@@ -91,6 +91,8 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
 }
 void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   batch.shared_point = SharedApex::none;
+  // Streams pad boxes of trees far from zero by much.
+  if (mode == TraversalMode::stream && tree.max_fused_size == 0.0f) mode = TraversalMode::single;
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream

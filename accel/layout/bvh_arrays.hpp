@@ -58,6 +58,7 @@ struct BvhArrays : TreeLeaves, NodesOfMesh {
     TreeView view{nodes.data(), corners.blocks(), live_root(), bounds};
     view.streams_from = streams_from;
     view.rays_wait = rays_wait && view.root != empty_reference;
+    view.max_fused_size = ready.max_fused_size;
     return view;
   }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + corners.bytes(); }

@@ -25,7 +25,11 @@ struct KdTreeArrays : TreeLeaves {
   std::size_t bytes() const {
     return nodes.size() * sizeof(KdNode) + wide_nodes.size() * sizeof(WideNode) + corners.bytes();
   }
-  TreeView view() const { return {wide_nodes.data(), corners.blocks(), root, bounds, nodes.data()}; }
+  TreeView view() const {
+    TreeView view{wide_nodes.data(), corners.blocks(), root, bounds, nodes.data()};
+    view.max_fused_size = ready.max_fused_size;
+    return view;
+  }
 };
 
 // Makes nodes of up to eight children of a tree's planes, leaves one block each; their boxes are cells, cut down to

@@ -20,6 +20,17 @@
 
 namespace raylanes {
 
+// TreeView::max_fused_size of a tree with these bounds. Measured: nearer to zero, padding costs less than differences.
+inline float max_fused_size(const Box& bounds) {
+  constexpr float most_sizes_away = 64.0f;
+  float farthest = 0.0f, size = 0.0f;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    farthest = std::max({farthest, -bounds.lo[axis], bounds.hi[axis]});
+    size = std::max(size, bounds.hi[axis] - bounds.lo[axis]);
+  }
+  return farthest > most_sizes_away * size ? 0.0f : TreeView().max_fused_size;
+}
+
 // A leaf's lanes, whose corners have numbers of type T.
 template <class T>
 struct LeafLanes {

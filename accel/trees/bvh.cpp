@@ -41,7 +41,9 @@ Bvh::Bvh(std::unique_ptr<BvhArrays> tree) noexcept : tree_(std::move(tree)) {
   make_ready();
 }
 void Bvh::make_ready() noexcept {
+  const QuietFloats quiet;
   tree_->boundary.reset();
+  tree_->ready.max_fused_size = max_fused_size(tree_->bounds);
   tree_->ready = tree_->view();
   set_ready(&tree_->ready);
 }

@@ -14,6 +14,8 @@ KdTree::KdTree(VertexView vertices, IndexView triangles, const KdBuildOptions& o
     : KdTree(std::make_unique<KdTreeArrays>(build_kdtree(vertices, triangles, options))) {}
 
 KdTree::KdTree(std::unique_ptr<KdTreeArrays> tree) noexcept : tree_(std::move(tree)) {
+  const QuietFloats quiet;
+  tree_->ready.max_fused_size = max_fused_size(tree_->bounds);
   tree_->ready = tree_->view();
   set_ready(&tree_->ready);
 }

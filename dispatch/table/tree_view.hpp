@@ -34,6 +34,9 @@ struct TreeView {
   float padding = 0.0f;       // and by this distance
   StreamSizes streams_from = {};
   bool rays_wait = false;  // single rays of a batch mostly wait for memory; the tree has a root
+  // Boxes are tested in the tree's own coordinates, and padded by a share of their size and a ray's reach together, up
+  // to this size. 0: beside its own size the tree is so far from zero that the padding would be large.
+  float max_fused_size = 0x1p60f;
 };
 
 }  // namespace raylanes

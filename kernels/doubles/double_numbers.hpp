@@ -5,12 +5,9 @@
 
 #include <bit>
 
-#include "../exact/exact_numbers.hpp"
+#include "../exact/exact_hit.hpp"
+#include "../exact/pairs.hpp"
 #include "double_rays.hpp"
-#include "pairs.hpp"
-#if defined(__AVX2__) && defined(__FMA__)
-#include "hit_in_pairs.hpp"
-#endif
 
 namespace raylanes {
 namespace {
@@ -94,11 +91,7 @@ struct NumbersInPairs {
   MaskOf<V> is_safe_, positive_[3], negative_[3];  // of the weights, corner by corner
 };
 
-#if defined(__AVX2__) && defined(__FMA__)
-inline HitInPairs numbers_of(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
-  return {triangles, ray, leaf_triangle};
-}
-#else
+#if !defined(__AVX2__) || !defined(__FMA__)
 // A ray and one triangle in all lanes: loads of lanes that were just stored one by one would wait.
 inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& triangles, const RayD& ray,
                                                         std::uint32_t leaf_triangle) {
@@ -112,38 +105,6 @@ inline NumbersInPairs<Doubles<double_lanes>> numbers_of(const DoubleTriangles& t
 }
 #endif
 
-[[gnu::noinline, maybe_unused]] HitD hit_in_integers(const DoubleTriangles& triangles, const RayD& ray,
-                                                     std::uint32_t leaf_triangle) {
-  const PredicateInput<double> in(triangles, ray, leaf_triangle);
-  const auto hit = detail::decide_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
-                                          finite_tmax(ray.tmax));
-  if (!hit.hit) return {};
-  return {hit.t + 0.0, hit.u + 0.0, hit.v + 0.0, triangles.primitive(leaf_triangle), 0};
-}
-
-// A ray and one triangle, with the ray's own ends. compares: where only t and the primitive matter, u and v may be
-// anything, and near edges only integers know them.
-template <bool compares>
-[[gnu::noinline, maybe_unused]] HitD decided_hit(const DoubleTriangles& triangles, const RayD& ray,
-                                                 std::uint32_t leaf_triangle, const AlongAxes& along) {
-  if (along.misses) return {};
-  auto numbers = numbers_of(triangles, ray, leaf_triangle);
-  if (along.zeros != 0) numbers.set_zeros(along.zeros);
-  if (numbers.misses(ray.tmin, ray.tmax)) return {};
-  if (compares ? numbers.has_t(ray.tmin, ray.tmax) : numbers.hits(ray.tmin, ray.tmax))
-    return numbers.hit(triangles.primitive(leaf_triangle));
-  return hit_in_integers(triangles, ray, leaf_triangle);
-}
-inline HitD exact_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
-  return decided_hit<false>(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
-}
-inline HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle,
-                           const AlongAxes& along) {
-  return decided_hit<true>(triangles, ray, leaf_triangle, along);
-}
-inline HitD hit_to_compare(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
-  return hit_to_compare(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
-}
 // The numbers of a triangle that is hit.
 inline HitD known_hit(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) {
   if (leaf_triangle == no_leaf_triangle) return {};

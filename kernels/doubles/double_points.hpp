@@ -3,9 +3,9 @@
 // the bounds.
 #pragma once
 
+#include "../exact/pairs.hpp"
 #include "../point/float_points.hpp"
 #include "double_rays.hpp"
-#include "pairs.hpp"
 
 namespace raylanes {
 namespace {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "../../dispatch/bits.hpp"
+#include "../exact/pairs.hpp"
 #include "../traverse/node_test.hpp"
 #include "double_rays.hpp"
-#include "pairs.hpp"
 #if defined(__AVX2__) && defined(__FMA__)
 #include "../traverse/fused/fused_ray.hpp"
 #endif

@@ -73,31 +73,6 @@ template <class Triangles, class AnyRay>
   return along_axes(ray.origin, ray.direction, [&](int k) { return triangles.number(k, leaf_triangle); });
 }
 
-// A ray and one triangle, with the ray's own ends. Rare: where floats leave the hit undecided, or the order of two
-// hits.
-template <class Triangles>
-[[gnu::noinline]] Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
-                                const AlongAxes& along) {
-  if (along.misses) return {};
-  RayTrianglePairs<1> lane;
-  set_lane(lane, 0, triangles, ray, leaf_triangle, SharedAxes(ray.direction));
-  RoundedHits<1> rounded;
-  decide_exactly(lane, 1u, rounded, along.zeros);
-  if (rounded.lanes == 0) return {};
-  return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
-}
-template <class Triangles>
-inline Hit exact_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
-  return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
-}
-
-// The same where only t and the primitive matter.
-template <class Triangles, class... Along>
-inline Hit hit_to_compare(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
-                          const Along&... along) {
-  return exact_hit(triangles, ray, leaf_triangle, along...);
-}
-
 // Whether a ray along an axis meets a triangle in a corner that is not before the best hit, whose t is known: around a
 // corner of a grid most triangles are met like that.
 template <class Triangles>

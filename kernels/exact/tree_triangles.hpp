@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../../dispatch/table/tree_view.hpp"
-#include "deferred_hits.hpp"
+#include "exact_hit.hpp"
 
 namespace raylanes {
 namespace {

@@ -164,10 +164,9 @@ class InstanceLeaves {
       walk_rest<InstanceTest>(tree, ray, nearest, has_ended);
       if (nearest.leaf_triangle == no_leaf_triangle) return false;
       const TreeTriangles triangles(tree);
-      HitNumbers numbers(tree, ray, nodes, nearest.leaf_triangle);
+      const HitNumbers numbers(tree, ray, nodes, nearest.leaf_triangle);
       if (!numbers.are_clear()) [[unlikely]]
-        if (!are_clear_with_zeros(triangles, ray, nearest.leaf_triangle, numbers))
-          return take(exact_hit(triangles, ray, nearest.leaf_triangle), entry, at, query);
+        return take(exact_hit(triangles, ray, nearest.leaf_triangle), entry, at, query);
       return take(numbers.hit(triangles.primitive(nearest.leaf_triangle)), entry, at, query);
     }
   }

@@ -78,11 +78,17 @@ inline constexpr bool walks_fused = has_node_lanes&& std::is_same_v<Counters, No
                                      std::is_same_v<Query, ChosenAny>);
 
 #if defined(__AVX2__) && defined(__FMA__)
-// Rays that FusedRay leaves out: invalid ones, and those with unusual numbers.
+// Rays that FusedRay leaves out: of trees far from zero, invalid ones, and those with unusual numbers.
 template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_unusual(const TreeView& tree, const Ray& ray, Query& query) {
   NoCounters counters(query);
   if constexpr (is_filtered<Test>) {
+    const bool is_far = tree.max_fused_size < FusedRay::max_size && query.beside <= max_beside;
+    if (FusedRay nodes; is_far && nodes.prepare_up_to<Test>(FusedRay::max_size, tree, ray)) {
+      const FarBoxes boxes(padded_slabs<Test>(ray, tree.bounds), nodes);
+      if (!walk_fused(tree, boxes, FusedLeaves<Test>(tree, ray, nodes), query) || query.beside <= max_beside)
+        return;
+    }
     if (is_valid(ray)) walk_beside<Test>(tree, ray, query, counters);
   } else {
     if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "../../dispatch/table/triangles.hpp"
-#include "../exact/deferred_hits.hpp"
+#include "../exact/exact_hit.hpp"
 #include "../ray/nearest.hpp"
 #include "../ray/ray_columns.hpp"
 #include "all_tests.hpp"

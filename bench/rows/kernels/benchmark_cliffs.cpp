@@ -118,6 +118,29 @@ void trace_a_ball(benchmark::State& state, float size) {
   });
 }
 
+// From inside a ball through its triangles, their edges or their corners: between corner 0 and the point at u and v.
+void trace_from_inside(benchmark::State& state, const Double3& centre, float u, float v, TriangleTest test) {
+  const double size = centre[0] == 0 ? 1 : 2;
+  Mesh ball;
+  append_icosphere(ball, centre, size, 7);
+  const Bvh tree(ball);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-0.4, 0.4);
+  std::vector<Ray> rays(4096);
+  for (Ray& ray : rays) {
+    const Index3& triangle = ball.triangles[random() % ball.triangles.size()];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto corner = [&](std::size_t k) { return ball.vertices[triangle[k]][axis]; };
+      ray.origin[axis] = static_cast<float>(centre[axis] + size * place(random));
+      ray.direction[axis] =
+          corner(0) + u * (corner(1) - corner(0)) + v * (corner(2) - corner(0)) - ray.origin[axis];
+    }
+  }
+  time_calls(state, rays.size(), [&] {
+    for (const Ray& ray : rays) benchmark::DoNotOptimize(tree.closest(ray, {.test = test}));
+  });
+}
+
 // --- The table.
 
 std::vector<BenchmarkCase> rays_and_points() {
@@ -130,6 +153,13 @@ std::vector<BenchmarkCase> rays_and_points() {
     };
     add("down/corners", [](benchmark::State& state, TriangleTest t) { trace_down(state, 0, t); });
     add("down/cells", [](benchmark::State& state, TriangleTest t) { trace_down(state, 0.3, t); });
+    const auto add_inside = [&](const char* what, const Double3& centre, float u, float v) {
+      add(what, [=](benchmark::State& state, TriangleTest t) { trace_from_inside(state, centre, u, v, t); });
+    };
+    add_inside("inside/triangles", {0, 0, 0}, 0.3f, 0.4f), add_inside("inside/edges", {0, 0, 0}, 0.3f, 0);
+    add_inside("inside/corners", {0, 0, 0}, 0, 0);
+    add_inside("inside/far_triangles", {148376, 1234, -223423}, 0.3f, 0.4f);
+    add_inside("inside/far_corners", {148376, 1234, -223423}, 0, 0);
     add("floor/in_plane", [](benchmark::State& state, TriangleTest t) { trace_along_floor(state, 0, t); });
     add("floor/above", [](benchmark::State& state, TriangleTest t) { trace_along_floor(state, 5e-4f, t); });
   }

@@ -38,12 +38,13 @@ class HitNumbers {
     D share = abs(inverse) * D(0x1p-53) * blend<4>(size, size * size);
     D bound = fused(fused(near, size, far), share, blend<4>(D(0x1p-51), D(0.0)));
     low_ = to_four_floats(number - bound), high_ = to_four_floats(number + bound);
+    number_ = number, bound_ = bound;
   }
   bool are_clear() const { return (bits(low_ == high_) & 7u) == 7u; }
-  // weights: bit i that of corner i, which are zero.
-  void set_zeros(std::uint32_t weights) {
-    auto at = FloatMask<4>::from_bits(weights >> 1);
-    low_ = select(at, Floats<4>(0.0f), low_), high_ = select(at, Floats<4>(0.0f), high_);
+  // Whether all three weights certainly have the sign of the determinant, so that the triangle is hit.
+  bool are_inside() const {
+    D rest = (D(1.0) - number_) - permute<1, 0, 2, 3>(number_);  // the third weight, over the determinant
+    return (bits((low_ > Floats<4>(0.0f))) & 3u) == 3u && (bits(rest > bound_ + bound_) & 1u) != 0;
   }
   // That of a hit; NaN if it is not clear.
   float clear_t() const {
@@ -69,14 +70,8 @@ class HitNumbers {
   }
 
   Floats<4> low_, high_;
+  D number_, bound_;  // of what these are
 };
-
-// Whether the numbers of a hit are clear, if not by themselves by weights that are zero.
-[[gnu::noinline, maybe_unused]] bool are_clear_with_zeros(const TreeTriangles& triangles, const Ray& ray,
-                                                          std::uint32_t leaf_triangle, HitNumbers& numbers) {
-  numbers.set_zeros(along_axes(triangles, ray, leaf_triangle).zeros);
-  return numbers.are_clear();
-}
 
 // Lanes of a leaf whose weights are certainly positive or negative, corner by corner.
 struct SignsOfWeights {
@@ -116,16 +111,20 @@ template <class Leaves, class Query>
     const std::uint32_t primitive = triangles.primitive(triangle);
     const bool is_lower = is_first || primitive < triangles.primitive(nearest.leaf_triangle);
     if (!is_lower && numbers.is_behind(nearest.tmax)) continue;
-    const AlongAxes along = along_axes(triangles, ray, triangle);
+    AlongAxes along;
+    if (has_zero(ray.direction)) along = along_axes(triangles, ray, triangle);
     if (along.misses) {
       ++nearest.beside;
       continue;
     }
     if constexpr (!decltype(nearest.sides)::chooses) {
       const float t = numbers.clear_t();
-      if (t > ray.tmin &&
-          (t < nearest.t_lo || (!is_first && is_lower && t == nearest.t_lo && t == nearest.tmax)) &&
-          along.zeros != 0 && Leaves(tree, ray, nodes).signs(leaf).are_of_one(lane, along.zeros)) {
+      const bool is_nearer =
+          t < nearest.t_lo || (!is_first && is_lower && t == nearest.t_lo && t == nearest.tmax);
+      // A rounded t at an end of the segment may lie on either side of it.
+      if (t > ray.tmin && t < ray.tmax && is_nearer &&
+          (numbers.are_inside() ||
+           (along.zeros != 0 && Leaves(tree, ray, nodes).signs(leaf).are_of_one(lane, along.zeros)))) {
         nearest.keep(t, t, triangle);
         continue;
       }

@@ -2,6 +2,8 @@
 // named exact are so unless a number is flushed. docs/exact.md, part 7, has the bounds.
 #pragma once
 
+#include <type_traits>
+
 #include "../simd/vec3.hpp"
 
 namespace raylanes {
@@ -112,8 +114,8 @@ struct BoundedPair {
   auto is_negative() const { return -value.high > bound; }
 };
 
-// The two doubles that a quotient lies between, if it is bounded; clear where they are one.
-template <class V>
+// The two numbers of type T that a quotient lies between, if it is bounded; clear where they are one.
+template <class V, class T = double>
 struct RoundedQuotient {
   V low, high;
   MaskOf<V> is_bounded, is_clear;
@@ -125,8 +127,10 @@ struct RoundedQuotient {
     V rest = (n - back.high) - back.low;
     V second = (rest + (numerator.value.low - first * denominator.value.low)) * inverse;
     V size = abs(first);
-    V off = (numerator.bound + size * denominator.bound) * abs(inverse) + size * V(0x1p-99);
-    low = first + (second - off), high = first + (second + off);
+    // Doubles are rounded again to floats, so that these need ends that are not rounded to halves between two floats.
+    constexpr double share = std::is_same_v<T, float> ? 0x1p-51 : 0x1p-99;
+    V off = (numerator.bound + size * denominator.bound) * abs(inverse) + size * V(share);
+    low = rounded(first + (second - off)), high = rounded(first + (second + off));
     is_bounded = (size > V(0x1p-900)) & (size < V(0x1p900)) & (abs(d) > V(4.0) * denominator.bound);
     is_clear = is_bounded & (low == high);
   }
@@ -134,6 +138,14 @@ struct RoundedQuotient {
   void set_zero(MaskOf<V> lanes) {
     low = select(lanes, V(0.0), low), high = select(lanes, V(0.0), high);
     is_bounded = is_bounded | lanes, is_clear = is_clear | lanes;
+  }
+
+ private:
+  static V rounded(V x) {
+    if constexpr (std::is_same_v<T, float>)
+      return to_four_doubles(to_four_floats(x));
+    else
+      return x;
   }
 };
 

@@ -1,0 +1,80 @@
+// Whether a ray hits a triangle, and where, for what a filter leaves undecided: by pairs of doubles, which nearly
+// always decide, or by integers. Paths without AVX2 take doubles for pairs where numbers are floats.
+#pragma once
+
+#include "deferred_hits.hpp"
+#if defined(__AVX2__) && defined(__FMA__)
+#include "hit_in_pairs.hpp"
+#endif
+
+namespace raylanes {
+namespace {
+
+template <class AnyRay>
+using NumberOfRay = typename decltype(AnyRay::origin)::value_type;
+
+template <class Triangles, class AnyRay>
+[[gnu::noinline]] auto hit_in_integers(const Triangles& triangles, const AnyRay& ray,
+                                       std::uint32_t leaf_triangle) {
+  using T = NumberOfRay<AnyRay>;
+  const PredicateInput<T> in(triangles, ray, leaf_triangle);
+  const auto found = detail::decide_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
+                                            finite_tmax(ray.tmax));
+  HitOf<T> hit;
+  if (found.hit)
+    hit.t = found.t + T(0), hit.u = found.u + T(0), hit.v = found.v + T(0),
+    hit.primitive = triangles.primitive(leaf_triangle);
+  return hit;
+}
+
+#if defined(__AVX2__) && defined(__FMA__)
+template <class Triangles, class AnyRay>
+inline HitInPairs<NumberOfRay<AnyRay>> numbers_of(const Triangles& triangles, const AnyRay& ray,
+                                                  std::uint32_t leaf_triangle) {
+  return {triangles, ray, leaf_triangle};
+}
+#else
+template <bool compares, class Triangles>
+[[gnu::noinline]] Hit decided_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
+                                  const AlongAxes& along) {
+  if (along.misses) return {};
+  RayTrianglePairs<1> lane;
+  set_lane(lane, 0, triangles, ray, leaf_triangle, SharedAxes(ray.direction));
+  RoundedHits<1> rounded;
+  decide_exactly(lane, 1u, rounded, along.zeros);
+  if (rounded.lanes == 0) return {};
+  return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
+}
+#endif
+
+// A ray and one triangle, with the ray's own ends. compares: where only t and the primitive matter, u and v may be
+// anything, and near edges only integers know them.
+template <bool compares, class Triangles, class AnyRay>
+[[gnu::noinline]] auto decided_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,
+                                   const AlongAxes& along) {
+  using AnyHit = HitOf<NumberOfRay<AnyRay>>;
+  if (along.misses) return AnyHit();
+  auto numbers = numbers_of(triangles, ray, leaf_triangle);
+  if (along.zeros != 0) numbers.set_zeros(along.zeros);
+  if (numbers.misses(ray.tmin, ray.tmax)) return AnyHit();
+  if (compares ? numbers.has_t(ray.tmin, ray.tmax) : numbers.hits(ray.tmin, ray.tmax))
+    return numbers.hit(triangles.primitive(leaf_triangle));
+  return hit_in_integers(triangles, ray, leaf_triangle);
+}
+template <class Triangles, class AnyRay>
+inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+  return decided_hit<false>(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+}
+// A hit of which only t and the primitive matter.
+template <class Triangles, class AnyRay>
+inline auto hit_to_compare(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,
+                           const AlongAxes& along) {
+  return decided_hit<true>(triangles, ray, leaf_triangle, along);
+}
+template <class Triangles, class AnyRay>
+inline auto hit_to_compare(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+  return hit_to_compare(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+}
+
+}  // namespace
+}  // namespace raylanes
