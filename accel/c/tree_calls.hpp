@@ -17,6 +17,9 @@
 struct RAYLANES_HANDLE {
   raylanes::c::RAYLANES_NUMBERS::Tree tree;
 };
+struct RAYLANES_CALL(calls) {
+  decltype(std::declval<raylanes::c::RAYLANES_NUMBERS::Tree&>().calls()) calls;
+};
 
 namespace raylanes::c::RAYLANES_NUMBERS {
 namespace {
@@ -66,6 +69,11 @@ std::filesystem::path file_of(const char* name) {
 
 RAYLANES_HANDLE* handle_of(Tree tree) {
   return new RAYLANES_HANDLE{std::move(tree)};
+}
+
+const auto& calls_of(const RAYLANES_CALL(calls) * handle) {
+  require_pointer("calls", handle);
+  return handle->calls;
 }
 
 // The hit of one ray, by find(ray) or find(ray, options).
@@ -195,6 +203,36 @@ raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYL
       *occluded = tree_of(tree).occluded(one);
     else
       *occluded = tree_of(tree).occluded(one, ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1));
+  });
+}
+
+raylanes_status RAYLANES_CALL(calls_create)(RAYLANES_CALL(calls) * *calls, const RAYLANES_HANDLE* tree,
+                                            const raylanes_ray_options* options) {
+  return status_of([&] {
+    make("calls", calls, [&] {
+      return new RAYLANES_CALL(calls){
+          tree_of(tree).calls(ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1))};
+    });
+  });
+}
+
+void RAYLANES_CALL(calls_destroy)(RAYLANES_CALL(calls) * calls) {
+  delete calls;
+}
+
+raylanes_status RAYLANES_CALL(calls_closest)(const RAYLANES_CALL(calls) * calls,
+                                             const RAYLANES_RECORD(ray) * ray, RAYLANES_RECORD(hit) * hit) {
+  return find_one(ray, hit, nullptr,
+                  [&](const auto& one, const auto&...) { return calls_of(calls).closest(one); });
+}
+
+raylanes_status RAYLANES_CALL(calls_occluded)(const RAYLANES_CALL(calls) * calls,
+                                              const RAYLANES_RECORD(ray) * ray, std::uint8_t* occluded) {
+  return status_of([&] {
+    require_pointer("ray", ray);
+    const auto one = Rays(ray, 1)[0];
+    require_pointer("occluded", occluded);
+    *occluded = calls_of(calls).occluded(one);
   });
 }
 

@@ -204,6 +204,19 @@ bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
                            : occluded_by_options(ray, options);
 }
 
+RayCalls<TriangleTree> TriangleTree::calls(const TraceOptions& options) const& {
+  RayCalls<TriangleTree> calls(*this, options);
+  checked_traversal(traced(), options);
+  skip_of_one("trace", options), require_after("trace", options.after, 1);
+  calls.options_.path = &checked_path(options.path);
+  if (!is_quick(ready_)) return calls;
+  if (const CallRow* const row = usual_row(calls.options_))
+    calls.kernels_ = {ready_, row->closest, row->any};
+  else if (const ChosenCallRow* const chosen = chosen_row(calls.options_))
+    calls.kernels_ = {ready_, nullptr, nullptr, chosen->closest, chosen->any};
+  return calls;
+}
+
 Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {
   const Traversal traversal = checked_traversal(traced(), options);
   const QuietFloats quiet;

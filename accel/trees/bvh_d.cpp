@@ -131,6 +131,15 @@ bool BvhD::occluded(const RayD& ray, const TraceOptionsD& options) const {
   kernels.any(view_of(tree_), batch);
   return occluded != 0;
 }
+RayCalls<BvhD> BvhD::calls(const TraceOptionsD& options) const& {
+  RayCalls<BvhD> calls(*this, options);
+  const DoubleRayKernels& kernels = checked_kernels(options);
+  skip_of_one("trace", options), require_after("trace", options.after, 1);
+  calls.options_.path = &checked_path(options.path);
+  if (is_quick(tree_.get(), options))
+    calls.kernels_ = {&tree_->ready, nullptr, nullptr, kernels.closest_of_ray, kernels.any_of_ray};
+  return calls;
+}
 
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
   trace_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits,

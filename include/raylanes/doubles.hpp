@@ -12,6 +12,7 @@
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/queries.hpp>
+#include <raylanes/ray_calls.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -125,6 +126,11 @@ class BvhD {
   HitD closest(const RayD& ray, const TraceOptionsD& options) const;
   /// Returns whether the ray's segment hits any triangle, by these options. Throws as closest() does.
   bool occluded(const RayD& ray, const TraceOptionsD& options) const;
+  /// Returns calls with one ray by these options, which take less time than closest() and occluded(): see RayCalls.
+  /// Throws as closest(ray, options) does.
+  RayCalls<BvhD> calls(const TraceOptionsD& options = {}) const&;
+  /// Does not compile: the calls would outlive a temporary tree.
+  RayCalls<BvhD> calls(const TraceOptionsD& options = {}) const&& = delete;
 
   /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
   /// Inactive rays leave their hit unchanged. Options may be views of hits that results go to.

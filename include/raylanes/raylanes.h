@@ -129,6 +129,34 @@ RAYLANES_STATUS raylanes_bvh_occluded1(const raylanes_bvh* tree, const raylanes_
 /// Sets *occluded to 1 if the ray of doubles hits any triangle, else to 0.
 RAYLANES_STATUS raylanes_bvhd_occluded1(const raylanes_bvhd* tree, const raylanes_rayd* ray,
                                         uint8_t* occluded, const raylanes_ray_options* options);
+/// Calls with one ray, prepared once: for loops that trace ray by ray.
+typedef struct raylanes_bvh_calls raylanes_bvh_calls;
+/// Calls with one ray of doubles.
+typedef struct raylanes_bvhd_calls raylanes_bvhd_calls;
+/// Prepares raylanes_bvh_calls_closest() and raylanes_bvh_calls_occluded(): they find what closest1 and occluded1 find
+/// by these options, in less time. They are valid until the tree is refitted or destroyed, and read `skip` and `after`
+/// in each call. Make them in the thread that uses them, and again if floating-point exceptions shall trap.
+RAYLANES_STATUS raylanes_bvh_calls_create(raylanes_bvh_calls** calls, const raylanes_bvh* tree,
+                                          const raylanes_ray_options* options);
+/// Prepares calls with one ray of doubles.
+RAYLANES_STATUS raylanes_bvhd_calls_create(raylanes_bvhd_calls** calls, const raylanes_bvhd* tree,
+                                           const raylanes_ray_options* options);
+/// Destroys calls, before or after their tree; NULL is allowed.
+RAYLANES_API void raylanes_bvh_calls_destroy(raylanes_bvh_calls* calls);
+/// Destroys calls with rays of doubles; NULL is allowed.
+RAYLANES_API void raylanes_bvhd_calls_destroy(raylanes_bvhd_calls* calls);
+/// Finds the nearest hit of one ray.
+RAYLANES_STATUS raylanes_bvh_calls_closest(const raylanes_bvh_calls* calls, const raylanes_ray* ray,
+                                           raylanes_hit* hit);
+/// Finds the nearest hit of one ray of doubles.
+RAYLANES_STATUS raylanes_bvhd_calls_closest(const raylanes_bvhd_calls* calls, const raylanes_rayd* ray,
+                                            raylanes_hitd* hit);
+/// Sets *occluded to 1 if the ray hits any triangle, else to 0.
+RAYLANES_STATUS raylanes_bvh_calls_occluded(const raylanes_bvh_calls* calls, const raylanes_ray* ray,
+                                            uint8_t* occluded);
+/// Sets *occluded to 1 if the ray of doubles hits any triangle, else to 0.
+RAYLANES_STATUS raylanes_bvhd_calls_occluded(const raylanes_bvhd_calls* calls, const raylanes_rayd* ray,
+                                             uint8_t* occluded);
 /// Sets occluded[i] to 1 if a triangle lies between `from` and points[i], three floats each, else to 0: shadows of one
 /// light. Tests the part of each segment between the shares `start` and `end` of its length, counted from `from`: 0 and
 /// 1 are all of it, both points included. `facing` is as `from` sees it. Item i of `skip` and `active` is that of

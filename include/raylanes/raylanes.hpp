@@ -14,6 +14,7 @@
 #include <raylanes/points.hpp>
 #include <raylanes/progress.hpp>
 #include <raylanes/queries.hpp>
+#include <raylanes/ray_calls.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>

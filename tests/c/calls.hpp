@@ -36,6 +36,11 @@ struct CallsOf;
     static constexpr auto occluded = raylanes_bvh##d##_occluded;                   \
     static constexpr auto closest1 = raylanes_bvh##d##_closest1;                   \
     static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;                 \
+    using Calls = raylanes_bvh##d##_calls;                                         \
+    static constexpr auto calls_create = raylanes_bvh##d##_calls_create;           \
+    static constexpr auto calls_destroy = raylanes_bvh##d##_calls_destroy;         \
+    static constexpr auto calls_closest = raylanes_bvh##d##_calls_closest;         \
+    static constexpr auto calls_occluded = raylanes_bvh##d##_calls_occluded;       \
     static constexpr auto occluded_from = raylanes_bvh##d##_occluded_from;         \
     static constexpr auto occluded_towards = raylanes_bvh##d##_occluded_towards;   \
     static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing;   \

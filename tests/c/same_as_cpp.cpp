@@ -89,6 +89,15 @@ TYPED_TEST(CCalls, write_the_hits_of_one_ray) {
     EXPECT_TRUE(same_bytes(hit.values()[0], expected)) << i;
     ASSERT_EQ(C::occluded1(tree, static_cast<const typename C::CRay*>(given), &occluded, c), RAYLANES_OK);
     EXPECT_EQ(occluded, is_occluded ? 1 : 0) << i;
+    typename C::Calls* calls = nullptr;
+    ASSERT_EQ(C::calls_create(&calls, tree, c), RAYLANES_OK);
+    ASSERT_EQ(C::calls_closest(calls, static_cast<const typename C::CRay*>(given),
+                               static_cast<typename C::CHit*>(hit.data())),
+              RAYLANES_OK);
+    EXPECT_TRUE(same_bytes(hit.values()[0], expected)) << i;
+    ASSERT_EQ(C::calls_occluded(calls, static_cast<const typename C::CRay*>(given), &occluded), RAYLANES_OK);
+    EXPECT_EQ(occluded, is_occluded ? 1 : 0) << i;
+    C::calls_destroy(calls);
     // Behind the hit there is the next one.
     raylanes_ray_options behind = c != nullptr ? *c : default_ray_options();
     behind.after = &expected;

@@ -5,6 +5,8 @@ static void test_hits(const TREE* tree) {
   unsigned char apart[3 * 37];
   uint8_t occluded[3];
   size_t i;
+  CALL(calls) * calls;
+  GOOD(CALL(calls_create)(&calls, tree, NULL));
   GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, NULL));
   EXPECT(hits[0].t == 1.5 && hits[0].primitive == 3 && hits[0].u == 0.25 && hits[0].v == 0.5);
   EXPECT(isinf(hits[1].t) && hits[1].u == 0 && hits[1].v == 0 && hits[1].primitive == RAYLANES_NO_PRIMITIVE);
@@ -24,9 +26,16 @@ static void test_hits(const TREE* tree) {
     EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
     GOOD(CALL(occluded1)(tree, rays + i, &is_occluded, NULL));
     EXPECT(is_occluded == occluded[i]);
+    memset(&hit, 0x5a, sizeof hit), is_occluded = 7;
+    GOOD(CALL(calls_closest)(calls, rays + i, &hit));
+    EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
+    GOOD(CALL(calls_occluded)(calls, rays + i, &is_occluded));
+    EXPECT(is_occluded == occluded[i]);
     GOOD(CALL(closest_crossing1)(tree, rays + i, &hit, NULL));
     EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
   }
+  CALL(calls_destroy)(calls);
+  CALL(calls_destroy)(NULL);
   GOOD(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, NULL));
   EXPECT(hits[0].t == 1.5 && hits[1].primitive == RAYLANES_NO_PRIMITIVE && hits[2].t == 0.25);
 }

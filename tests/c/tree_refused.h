@@ -65,6 +65,7 @@ static void test_refused_rays(const TREE* tree) {
   RECORD(hit) hits[3];
   uint8_t occluded[3];
   raylanes_lists* lists = (raylanes_lists*)hits;  // anything
+  CALL(calls)* calls = (CALL(calls)*)hits;
   const size_t short_ray = sizeof *rays - 1, short_hit = sizeof *hits - 1;
   REFUSED(CALL(closest)(NULL, rays, 3, 0, hits, 0, NULL), "tree");
   REFUSED(CALL(closest)(tree, NULL, 3, 0, hits, 0, NULL), "rays");
@@ -82,6 +83,11 @@ static void test_refused_rays(const TREE* tree) {
   REFUSED(CALL(closest1)(NULL, rays, hits, NULL), "tree");
   REFUSED(CALL(closest1)(tree, NULL, hits, NULL), "ray");
   REFUSED(CALL(closest1)(tree, rays, NULL, NULL), "hit");
+  REFUSED(CALL(calls_create)(NULL, tree, NULL), "calls");
+  REFUSED(CALL(calls_create)(&calls, NULL, NULL), "tree");
+  EXPECT(calls == NULL);
+  REFUSED(CALL(calls_closest)(NULL, rays, hits), "calls");
+  REFUSED(CALL(calls_occluded)(NULL, rays, occluded), "calls");
   REFUSED(CALL(occluded1)(NULL, rays, occluded, NULL), "tree");
   REFUSED(CALL(occluded1)(tree, NULL, occluded, NULL), "ray");
   REFUSED(CALL(occluded1)(tree, rays, NULL, NULL), "occluded");

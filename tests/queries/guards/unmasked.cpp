@@ -123,6 +123,11 @@ void add_nearest(Calls& calls, const std::string& of, const Tree& tree, Batch<T,
     calls[of + "::occluded_towards"] = [&, by] {
       tree.occluded_towards(b.points[1], b.points, b.occluded, by);
     };
+  if constexpr (requires { tree.calls(by); })
+    calls[of + "::calls"] = [&, by] {
+      const auto prepared = tree.calls(by);
+      for (const auto& ray : b.rays) prepared.closest(ray), prepared.occluded(ray);
+    };
   if constexpr (requires { tree.closest_crossing(b.rays[0], by); })
     calls[of + "::closest_crossing"] = [&, by] {
       for (const auto& ray : b.rays) tree.closest_crossing(ray, by);

@@ -1,0 +1,93 @@
+// Calls with one ray, prepared once: for loops that trace ray by ray.
+#pragma once
+
+#include <cstdint>
+
+#include <raylanes/traversal.hpp>
+#include <raylanes/types.hpp>
+
+namespace raylanes {
+
+class BvhD;
+class TriangleTree;
+struct DoubleTreeView;
+struct TraceOptions;
+struct TraceOptionsD;
+struct TreeView;
+
+namespace detail {
+
+// The types of a tree's calls, and its kernels: by default options, and with sides and a primitive to skip.
+template <class Tree>
+struct TypesOfCalls;
+template <>
+struct TypesOfCalls<TriangleTree> {
+  using Ray = raylanes::Ray;
+  using Hit = raylanes::Hit;
+  using Options = TraceOptions;
+  using View = TreeView;
+};
+template <>
+struct TypesOfCalls<BvhD> {
+  using Ray = RayD;
+  using Hit = HitD;
+  using Options = TraceOptionsD;
+  using View = DoubleTreeView;
+};
+template <class Types>
+struct KernelsOfCalls {
+  const typename Types::View* view = nullptr;
+  typename Types::Hit (*closest)(const typename Types::View&, const typename Types::Ray&) = nullptr;
+  bool (*occluded)(const typename Types::View&, const typename Types::Ray&) = nullptr;
+  typename Types::Hit (*closest_chosen)(const typename Types::View&, const typename Types::Ray&, Facing,
+                                        std::uint32_t) = nullptr;
+  bool (*occluded_chosen)(const typename Types::View&, const typename Types::Ray&, Facing,
+                          std::uint32_t) = nullptr;
+};
+
+}  // namespace detail
+
+/// Calls with one ray by a tree's `calls(options)`: `closest(ray)` and `occluded(ray)` return what the tree's
+/// `closest(ray, options)` and `occluded(ray, options)` return, in less time for rays that are traced quickly.
+/// The object asks once what those functions ask in each call: whether floating-point exceptions trap, which ISA path
+/// is active, and which kernel traces by the options. If options need more than a kernel, such as counters, calls take
+/// the usual way.
+/// - Make it in the thread that uses it, once a thread or loop. Copies are cheap. Many threads may use one object if
+///   none of them lets exceptions trap.
+/// - It is valid until the tree is destroyed, moved, assigned to or refitted, and refers to what the options refer to.
+///   options.skip[0] and options.after[0] are read in each call.
+/// - If exceptions trap when it is made, calls mask them as all calls do. If you let them trap later, calls may trap.
+/// - force_path() does not change it.
+template <class Tree>
+class RayCalls {
+  using Types = detail::TypesOfCalls<Tree>;
+
+ public:
+  using Ray = typename Types::Ray;          ///< a ray of the tree's numbers
+  using Hit = typename Types::Hit;          ///< its hit
+  using Options = typename Types::Options;  ///< how rays are traced
+
+  /// Returns the nearest hit of the ray, or a miss.
+  Hit closest(const Ray& ray) const {
+    if (kernels_.closest != nullptr) return kernels_.closest(*kernels_.view, ray);
+    if (kernels_.closest_chosen == nullptr) return tree_->closest(ray, options_);
+    return kernels_.closest_chosen(*kernels_.view, ray, options_.facing, skipped());
+  }
+  /// Returns whether the ray's segment hits any triangle.
+  bool occluded(const Ray& ray) const {
+    if (kernels_.occluded != nullptr) return kernels_.occluded(*kernels_.view, ray);
+    if (kernels_.occluded_chosen == nullptr) return tree_->occluded(ray, options_);
+    return kernels_.occluded_chosen(*kernels_.view, ray, options_.facing, skipped());
+  }
+
+ private:
+  friend Tree;
+  RayCalls(const Tree& tree, const Options& options) : tree_(&tree), options_(options) {}
+  std::uint32_t skipped() const { return options_.skip.first != nullptr ? options_.skip[0] : no_primitive; }
+
+  detail::KernelsOfCalls<Types> kernels_;
+  const Tree* tree_;
+  Options options_;
+};
+
+}  // namespace raylanes
