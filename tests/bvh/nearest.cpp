@@ -140,21 +140,5 @@ static_assert(!std::is_constructible_v<VertexView, std::vector<float*>>);
 static_assert(!std::is_constructible_v<IndexView, std::vector<float>>);
 static_assert(!std::is_constructible_v<IndexView, std::vector<std::int64_t>>);
 
-TEST(Queries, traces_single_rays_as_it_does_batches) {
-  const Mesh mesh = triangle_soup(300, 0.3f, 63);
-  const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 64);
-  const Bvh bvh(mesh);
-  for (const TraceOptions& options : ways_to_trace()) {
-    const std::vector<Hit> hits = trace(bvh, rays, options);
-    const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Hit hit = bvh.closest(rays[i], options);
-      ASSERT_TRUE(same_bytes(hit, hits[i])) << name_of(options);
-      ASSERT_EQ(bvh.occluded(rays[i], options), occluded[i] != 0) << name_of(options);
-      ASSERT_EQ(static_cast<bool>(hit), occluded[i] != 0) << name_of(options);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace raylanes::testing

@@ -1,10 +1,16 @@
-// The numbers of coordinates, for tests of floats and of doubles by one text.
+// Trees, meshes and rays of floats and of doubles, for tests of both by one text.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <type_traits>
+#include <vector>
+
+#include <raylanes/doubles.hpp>
+
+#include "../../dispatch/table/numbers.hpp"
+#include "double_cases.hpp"
 
 namespace raylanes::testing {
 
@@ -15,5 +21,37 @@ struct NumberNames {
     return std::is_same_v<T, float> ? "float" : "double";
   }
 };
+
+template <class T>
+using BvhOf = std::conditional_t<std::is_same_v<T, float>, Bvh, BvhD>;
+template <class T>
+using MeshOf = std::conditional_t<std::is_same_v<T, float>, Mesh, DoubleMesh>;
+template <class T>
+using CrossingOf = std::conditional_t<std::is_same_v<T, float>, Crossing, CrossingD>;
+template <class T>
+using TraceOptionsOf = std::conditional_t<std::is_same_v<T, float>, TraceOptions, TraceOptionsD>;
+
+// The same numbers as floats or as doubles.
+template <class T>
+MeshOf<T> mesh_of(const Mesh& mesh) {
+  if constexpr (std::is_same_v<T, float>)
+    return mesh;
+  else
+    return moved(mesh, 1, {0, 0, 0});
+}
+template <class T>
+std::vector<RayOf<T>> rays_of(const std::vector<Ray>& rays) {
+  std::vector<RayOf<T>> result;
+  for (const Ray& ray : rays) {
+    RayOf<T>& to = result.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) to.origin[k] = ray.origin[k], to.direction[k] = ray.direction[k];
+    to.tmin = ray.tmin, to.tmax = ray.tmax;
+  }
+  return result;
+}
+template <class T>
+BvhOf<T> tree_of(const MeshOf<T>& mesh, const BuildOptions& options = {}) {
+  return BvhOf<T>(mesh.vertices, mesh.triangles, options);
+}
 
 }  // namespace raylanes::testing

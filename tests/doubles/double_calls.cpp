@@ -6,7 +6,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "../support/filtered.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/message_of.hpp"
@@ -55,25 +54,6 @@ TEST(DoubleCalls, records_of_any_stride_and_alignment) {
   EXPECT_TRUE(same_bytes(hits, sample.hits));
 }
 
-TEST(DoubleCalls, inactive_rays_are_left_alone) {
-  const Sample sample;
-  Random random(2);
-  for (const auto& mask : masks_for(sample.rays.size(), random)) {
-    const HitD untouched{7, 7, 7, 7, 7};
-    std::vector<HitD> hits(sample.rays.size(), untouched);
-    std::vector<std::uint8_t> occluded(sample.rays.size(), 7);
-    sample.tree.closest(sample.rays, hits, {.active = mask.data()});
-    sample.tree.occluded(sample.rays, occluded, {.active = mask.data()});
-    const RayLists<HitD> lists = sample.tree.all_hits(sample.rays, {.active = mask.data()});
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      const bool active = (mask[i / 8] >> i % 8 & 1) != 0;
-      ASSERT_TRUE(same_bytes(hits[i], active ? sample.hits[i] : untouched));
-      ASSERT_EQ(occluded[i], !active ? 7 : sample.hits[i] ? 1 : 0);
-      ASSERT_EQ(lists[i].empty(), !active || !sample.hits[i]);
-    }
-  }
-}
-
 TEST(DoubleCalls, batches_of_any_size_end_where_they_end) {
   const Sample sample;
   for (const Path* path : paths_with_own_queries())
@@ -87,30 +67,6 @@ TEST(DoubleCalls, batches_of_any_size_end_where_they_end) {
       ASSERT_TRUE(hits.holds(std::span(sample.hits).first(n)));
       ASSERT_TRUE(rays.is_intact() && hits.is_intact() && occluded.is_intact());
     }
-}
-
-TEST(DoubleCalls, empty_trees_hit_nothing) {
-  const RayD ray{{0, 0, -1}, 0, {0, 0, 1}, 9};
-  const std::vector<Double3> flat{{0, 0, 0}, {1, 0, 0}};
-  BvhD moved_from = Sample().tree, taken = std::move(moved_from);
-  EXPECT_GT(taken.node_count(), 0u);
-  EXPECT_EQ(moved_from.bytes(), 0u);
-  const BvhD none, of_no_triangles(VertexViewD{}, IndexView{}),
-      degenerate(flat, std::vector<Index3>{{0, 1, 1}, {0, 0, 0}});
-  const BvhD* const trees[] = {&none, &of_no_triangles, &degenerate, &moved_from};
-  for (const BvhD* tree : trees) {
-    EXPECT_FALSE(tree->closest(ray));
-    EXPECT_FALSE(tree->occluded(ray));
-    const std::vector<RayD> rays(20, ray);
-    std::vector<HitD> hits(rays.size(), HitD{7, 7, 7, 7, 7});
-    tree->closest(rays, hits);
-    EXPECT_TRUE(same_bytes(hits, std::vector<HitD>(rays.size())));
-    EXPECT_EQ(tree->leaf_count(), 0u);
-    EXPECT_GT(tree->bounds().lo[0], tree->bounds().hi[0]);
-    Location location = Location::on;
-    tree->locate(VertexViewD(&ray.origin, 1), {&location, 1});
-    EXPECT_EQ(location, Location::outside);
-  }
 }
 
 TEST(DoubleCalls, rays_that_are_none_miss) {
@@ -153,23 +109,6 @@ TEST(DoubleCalls, flushing_changes_nothing_of_ordinary_size) {
       }
     }
   }
-}
-
-TEST(DoubleCalls, occluded_from_is_that_of_segments) {
-  const Sample sample;
-  const Double3 light{3, 2, 4};
-  std::vector<Double3> points;
-  std::vector<RayD> segments;
-  for (const RayD& ray : sample.rays) {
-    points.push_back(ray.origin);
-    const SegmentEndsD ends;
-    EXPECT_TRUE(ends.start == 0 && ends.end == 1);
-    segments.push_back(segment_to<double>(light, ray.origin));
-  }
-  std::vector<std::uint8_t> from(points.size()), along(points.size());
-  sample.tree.occluded_from(light, points, from);
-  sample.tree.occluded(segments, along);
-  EXPECT_EQ(from, along);
 }
 
 TEST(DoubleCalls, ends_of_segments_are_doubles) {
@@ -219,32 +158,34 @@ TEST(DoubleCalls, segments_longer_than_the_largest_double) {
   }
 }
 
-TEST(DoubleCalls, refused_meshes_and_options) {
-  const Sample sample;
-  const std::vector<Double3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};
-  const auto refused = [](const auto& call) { return message_of<std::invalid_argument>(call); };
-  expect_words(refused([&] { BvhD(corners, bad); }), {"triangle 1", "3"});
-  for (const double value : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL}) {
-    std::vector<Double3> spoilt = corners;
-    spoilt[2][1] = value;
-    expect_words(refused([&] { BvhD(spoilt, good); }), {"vertex 2", "y"});
+// The sphere measures two millimetres at 1e5 metres, where floats are 8 mm apart.
+TEST(DoubleCalls, a_small_sphere_far_away_is_hit_by_all_rays_to_it) {
+  const Mesh sphere = ellipsoid(3, {0, 0, 0}, {1, 1, 1});
+  const Double3 at{1e5, 1e5, 1e5};
+  const DoubleMesh mesh = moved(sphere, 1e-3, at);
+  const BvhD tree(mesh.vertices, mesh.triangles);
+  Random random(5);
+  std::vector<RayD> rays;
+  for (int i = 0; i < 20000; ++i) {
+    RayD ray{{at[0] + random.real(-1, 1), at[1] + random.real(-1, 1), at[2] + 1}, 0, {}, 2};
+    for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = at[k] + 1e-4 * random.real(-1, 1) - ray.origin[k];
+    rays.push_back(ray);
   }
-  expect_words(refused([&] { BvhD(corners, good, {.builder = TreeBuilder::spatial_splits}); }), {"split"});
-  expect_words(refused([&] { BvhD(corners, good, {.threads = -1}); }), {"-1", "thread"});
-  BvhD tree(corners, good);
-  expect_words(refused([&] { tree.refit(corners, std::vector<Index3>{}); }), {"0", "1"});
-  std::vector<HitD> two(2);
-  std::vector<std::uint8_t> flags(2);
-  const std::vector<RayD> rays(3);
-  expect_words(refused([&] { tree.closest(rays, two); }), {"3", "2"});
-  expect_words(refused([&] { tree.occluded(rays, flags); }), {"3", "2"});
-  expect_words(refused([&] { tree.closest(std::span(rays).first(2), two, {.threads = -1}); }), {"-1"});
-  expect_words(refused([&] { tree.closest(rays[0], {.facing = static_cast<Facing>(3)}); }), {"facing", "3"});
-  expect_words(refused([&] { tree.closest(rays[0], {.after = two}); }), {"after", "2"});
+  std::vector<HitD> hits(rays.size());
+  tree.closest(rays, hits);
+  std::vector<CrossingCount> counts(rays.size());
+  tree.count_crossings(rays, counts);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(hits[i]);
+    ASSERT_EQ(counts[i], (CrossingCount{2, 0}));
+  }
+}
+
+TEST(DoubleCalls, are_not_counted) {
   TraceCounters counters;
-  expect_words(refused([&] { tree.all_hits(rays, {.counters = &counters}); }), {"counted"});
-  EXPECT_TRUE(tree.closest({{0.2, 0.2, 1}, 0, {0, 0, -1}, 9}));
+  const std::vector<RayD> rays(3);
+  expect_words(message_of<std::invalid_argument>([&] { BvhD().all_hits(rays, {.counters = &counters}); }),
+               {"counted"});
 }
 
 }  // namespace

@@ -1,10 +1,6 @@
-// Winding numbers of doubles: of all sizes and far away, by other rules, of threads and masks.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "double_winding_cases.hpp"
+// Winding numbers of doubles: of all sizes and far away.
+#include "../queries/open_meshes.hpp"
+#include "double_cases.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -50,19 +46,6 @@ TEST(DoubleWindings, a_box_of_all_doubles) {
   EXPECT_GT(expect_windings(mesh, points, false), 50u);
 }
 
-TEST(DoubleWindings, the_rules_agree_on_closed_meshes) {
-  const DoubleMesh mesh = moved(double_fan(24, 0.3f), 1e-3, {5e6, -4e6, 1e5});
-  std::vector<Double3> points = points_around(mesh, by_level(400), 100);
-  points.insert(points.end(), mesh.vertices.begin(), mesh.vertices.end());
-  const BvhD tree(mesh.vertices, mesh.triangles);
-  std::vector<Location> parity(points.size()), winding(points.size());
-  tree.locate(points, parity);
-  for (const Path* path : paths_with_own_queries()) {
-    tree.locate(points, winding, {.rule = InsideRule::winding, .path = path, .threads = 2});
-    EXPECT_EQ(winding, parity) << path->name;
-  }
-}
-
 // Triangles without an area, so small that powers of distances in a large boundary are flushed.
 TEST(DoubleWindings, tiny_parts_of_a_large_boundary) {
   DoubleMesh mesh;
@@ -72,22 +55,6 @@ TEST(DoubleWindings, tiny_parts_of_a_large_boundary) {
     append(mesh, {large, 0, 0}, {0, large, 0}, {0, 0, large});
   }
   expect_windings(mesh, {{0, 3, 4}, {0, 0x1p20, 3}, {0x1p299, 0x1p298, 0x1p297}, {20, 1, 30}, {0, -40, 1}});
-}
-
-TEST(DoubleWindings, threads_and_masks) {
-  const DoubleMesh mesh = moved(without(ellipsoid(1, {0, 0, 0}), 0.1, 103), 1e-3, {5e6, 0, 1e6});
-  const std::vector<Double3> points = points_around(mesh, 2000, 104);
-  Random random(106);
-  for (const auto& mask : masks_for(points.size(), random)) {
-    const BvhD tree(mesh.vertices, mesh.triangles);
-    std::vector<double> one(points.size()), together(points.size()), some(points.size(), -7.0);
-    tree.winding_numbers(points, one);
-    tree.winding_numbers(points, together, {.threads = 3});
-    EXPECT_TRUE(same_bytes(one, together));
-    tree.winding_numbers(points, some, {.threads = 2, .active = mask.data()});
-    for (std::size_t i = 0; i < points.size(); ++i)
-      ASSERT_EQ(some[i], (mask[i / 8] >> i % 8 & 1) != 0 ? one[i] : -7.0) << "point " << i;
-  }
 }
 
 }  // namespace

@@ -101,22 +101,5 @@ TEST_F(KdCounters, are_of_planes_where_those_are_walked) {
   }
 }
 
-TEST_F(KdCounters, do_not_change_the_answer) {
-  const Mesh mesh = triangle_soup(500, 0.3f, 72);
-  const std::vector<Ray> rays = mixed_rays(mesh, 300, 2, {0, 0, 0}, 73);
-  for (const KdBuilder builder : kd_builder_list()) {
-    const KdTree tree(mesh, {.builder = builder});
-    for (TraceOptions way : ways_to_trace()) {
-      const std::vector<Hit> hits = trace(tree, rays, way);
-      TraceCounters counters;
-      way.counters = &counters;
-      const std::vector<Hit> counted = trace(tree, rays, way);
-      EXPECT_TRUE(same_bytes(hits, counted)) << name_of(way);
-      EXPECT_GT(counters.nodes, 0u) << name_of(way);
-      EXPECT_GT(counters.triangle_tests, 0u) << name_of(way);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace raylanes::testing

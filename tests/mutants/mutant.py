@@ -19,9 +19,15 @@ class Mutant:
         return text[:at] + self.new + text[at + len(self.old):]
 
 
-def rows_of(file, program, *rows, **more):
-    """Mutants of one file that one test must notice: tuples of a name, what is there, and what replaces it."""
-    return [Mutant(name, file, old, new, (program,), **more) for name, old, new in rows]
+# Queries of doubles are judged beside those of floats; what only doubles have is judged apart.
+DOUBLES = ('test_doubles', 'test_queries')
+
+
+def rows_of(file, programs, *rows, **more):
+    """Mutants of one file that a test, or one of some, must notice: tuples of a name, what is there, and what replaces
+    it."""
+    programs = (programs,) if isinstance(programs, str) else programs
+    return [Mutant(name, file, old, new, programs, **more) for name, old, new in rows]
 
 
 # The units of kernels/, as meson.build has them: library UNIT_PATH of the build, and its source.
@@ -42,9 +48,9 @@ UNITS = {
 TREES = ('test_trees', 'test_bvh', 'test_kdtree')
 FOLDERS = {
     'kernels/box': ('boxes', ('test_boxes', 'test_every_row')),
-    'kernels/doubles': ('doubles', ('test_doubles', 'test_every_row')),
+    'kernels/doubles': ('doubles', DOUBLES + ('test_every_row',)),
     'kernels/exact': ('traversal', ('test_exact', 'test_bvh', 'test_queries')),
-    'kernels/kdtree': ('kdtree', ('test_kdtree', 'test_every_row')),
+    'kernels/kdtree': ('kdtree', ('test_kdtree', 'test_queries', 'test_bvh', 'test_every_row')),
     'kernels/point': ('points', ('test_points', 'test_every_row')),
     'kernels/query': ('queries', ('test_queries', 'test_scenes', 'test_every_row')),
     'kernels/ray': ('triangles', ('test_triangles', 'test_triangle_meshes', 'test_every_row')),
@@ -58,7 +64,7 @@ FOLDERS = {
     'accel/batch': ('', TREES + ('test_scenes', 'test_points')),
     'accel/builders': ('', ('test_builders',) + TREES),
     'accel/c': ('', ('test_c_calls',)),
-    'accel/doubles': ('', ('test_doubles',)),
+    'accel/doubles': ('', DOUBLES),
     'accel/file': ('', TREES),
     'accel/layout': ('', ('test_builders',) + TREES),
     'accel/mesh': ('', ('test_bvh', 'test_points', 'test_queries')),

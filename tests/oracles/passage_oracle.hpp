@@ -85,39 +85,6 @@ auto oracle_passages(const AnyMesh& mesh, const AnyRay& ray, std::uint32_t skipp
   return oracle_passages(mesh, ray, hits, oracle_crossings(mesh, ray));
 }
 
-// The rays of a mesh with their passages from any side: of all triangles, and of all but those to skip.
-template <class AnyMesh, class AnyRay>
-struct PassingRays {
-  using Hits = decltype(oracle_hits(AnyMesh(), AnyRay()));
-  AnyMesh mesh;
-  std::vector<AnyRay> rays;
-  std::vector<std::uint32_t> skip;  // of some rays the first or the last hit
-  std::vector<Hits> of_all, of_others;
-  std::size_t touches = 0;  // hits that are no passages
-
-  PassingRays(AnyMesh of, std::vector<AnyRay> along) : mesh(std::move(of)), rays(std::move(along)) {
-    for (const AnyRay& ray : rays) {
-      const Hits hits = oracle_hits(mesh, ray);
-      const std::size_t i = skip.size();
-      skip.push_back(hits.empty() || i % 3 == 0 ? no_primitive
-                                                : hits[i % 3 == 1 ? 0 : hits.size() - 1].primitive);
-      of_all.push_back(oracle_passages(mesh, ray)), of_others.push_back(oracle_passages(mesh, ray, skip[i]));
-      touches += hits.size() - of_all[i].size();
-    }
-  }
-  // Each ray's passages from the chosen side.
-  std::vector<Hits> passages(Facing facing, bool skips) const {
-    std::vector<Hits> all = skips ? of_others : of_all;
-    for (std::size_t i = 0; i < rays.size() && facing != Facing::any; ++i) {
-      const Hits sided = oracle_hits(mesh, rays[i], facing);
-      std::erase_if(all[i], [&](const auto& hit) {
-        return std::ranges::find(sided, hit.primitive, &Hits::value_type::primitive) == sided.end();
-      });
-    }
-    return all;
-  }
-};
-
 // From points that are multiples of a half to corners and middles of edges, which floats hold.
 inline std::vector<Ray> touching_rays(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   Random random(seed);

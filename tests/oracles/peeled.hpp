@@ -45,19 +45,29 @@ std::size_t expect_peeled(const std::vector<AnyRay>& rays, const std::vector<std
   }
   return found;
 }
-// Asks a tree or a scene for passages; a ray alone skips what it skips among all.
-template <class Tree, class AnyRay, class Skip, class... Mask>
-auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip,
-                 Mask... mask) {
-  return [&tree, &rays, &skip, mask...](const auto& from, auto&&... rest) {
+// As expect_peeled() asks: rays among all, and a ray alone, which skips what it skips there.
+template <class AnyRay, class Skip, class Call>
+auto skipping(const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, const Call& call) {
+  return [&rays, &skip, call](const auto& from, auto&&... rest) {
     if constexpr (sizeof...(rest) == 2) {
-      tree.closest_crossing(from, rest..., mask...);
+      call(from, rest...);
     } else {
       auto options = (rest, ...);
       if (options.skip.first != nullptr) options.skip = skip[static_cast<std::size_t>(&from - rays.data())];
-      return tree.closest_crossing(from, options, mask...);
+      return call(from, options);
     }
   };
+}
+// Asks a tree or a scene for hits, or for passages.
+template <class Tree, class AnyRay, class Skip>
+auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
+  return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest(call...); });
+}
+template <class Tree, class AnyRay, class Skip, class... Mask>
+auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip,
+                 Mask... mask) {
+  return skipping(rays, skip,
+                  [&tree, mask...](auto&&... call) { return tree.closest_crossing(call..., mask...); });
 }
 // all_of(ray) gives the expected answers.
 template <class AnyHit, class AnyRay, class Options, class Closest, class AllOf>

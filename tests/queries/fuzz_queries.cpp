@@ -6,69 +6,10 @@
 #include <raylanes/kdtree.hpp>
 
 #include "../fuzz/any_mesh.hpp"
-#include "../fuzz/any_passages.hpp"
-#include "../fuzz/fence.hpp"
-#include "../support/limited_memory.hpp"
-#include "../support/same_bytes.hpp"
-#include "summed_winding.hpp"
+#include "../fuzz/query_checks.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-constexpr std::size_t max_queries = 24;
-
-bool is_finite(const Float3& point) {
-  return std::ranges::all_of(point, [](float x) { return std::isfinite(x); });
-}
-
-struct Expected {
-  std::vector<std::vector<Hit>> hits;
-  std::vector<std::vector<Crossing>> crossings;
-};
-
-template <class Tree>
-void expect_lists(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
-                  const ListOptions& options) {
-  const RayLists<Hit> hits = tree.all_hits(rays, options);
-  const RayLists<Crossing> crossings = tree.crossings(rays, options);
-  static Fence fence(max_queries * sizeof(CrossingCount));
-  const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
-  tree.count_crossings(
-      rays, counts,
-      {.facing = options.facing, .path = options.path, .threads = options.threads, .skip = options.skip});
-  fence.expect_intact("counts");
-  // Many rays go together.
-  std::vector<Ray> many;
-  for (std::size_t i = 0; i < 1100 && !rays.empty() && options.max_count > 70; ++i)
-    many.push_back(rays[i % rays.size()]);
-  std::vector<std::uint32_t> skip_of_many;
-  for (std::size_t i = 0; i < many.size() && options.skip.count > 0; ++i)
-    skip_of_many.push_back(options.skip[i % rays.size()]);
-  ListOptions of_many = options;
-  of_many.skip = skip_of_many;
-  const RayLists<Hit> many_hits = tree.all_hits(many, of_many);
-  const RayLists<Crossing> many_crossings = tree.crossings(many, of_many);
-  for (std::size_t i = 0; i < many.size(); ++i)
-    if (!same_bytes(many_hits[i], expected.hits[i % rays.size()]) ||
-        !std::ranges::equal(many_crossings[i], expected.crossings[i % rays.size()]))
-      fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
-    const auto first = [&](const auto& list) {
-      return std::min<std::size_t>(options.max_count, list.size());
-    };
-    if (!same_bytes(hits[i], std::span(expected.hits[i]).first(first(expected.hits[i]))))
-      fail(ray + std::to_string(hits[i].size()) + " hits, by brute force " +
-           std::to_string(expected.hits[i].size()));
-    if (!std::ranges::equal(crossings[i],
-                            std::span(expected.crossings[i]).first(first(expected.crossings[i]))))
-      fail(ray + std::to_string(crossings[i].size()) + " crossings, by brute force " +
-           std::to_string(expected.crossings[i].size()));
-    CrossingCount count;
-    for (const Crossing& crossing : expected.crossings[i]) ++count.crossings, count.winding += crossing.side;
-    if (counts[i] != count) fail(ray + "counts differ");
-  }
-}
 
 // A point in a line of many has the place that it has beside its neighbour alone, which is found in another way.
 template <class Tree>
@@ -82,27 +23,6 @@ void expect_places_of_lines(const Tree& tree, const std::vector<Ray>& rays,
     Location pair[2];
     tree.locate(VertexView(&rays[i - 1], 2, sizeof(Ray)), pair, options);
     if (pair[1] != locations[i]) fail("a point in a line has another place than beside its neighbour");
-  }
-}
-
-// All layers, one after the other, in place.
-template <class Tree>
-void expect_next_hits(const Tree& tree, const std::vector<Ray>& rays, const Expected& expected,
-                      const Path* path, Facing facing, const PrimitiveView& skip) {
-  static Fence fence(max_queries * sizeof(Hit));
-  const std::span<Hit> hits(fence.last<Hit>(rays.size()), rays.size());
-  std::fill(hits.begin(), hits.end(), Hit{-infinity, 0, 0, 0});
-  bool some = true;
-  for (std::size_t layer = 0; some; ++layer) {
-    tree.closest(rays, hits, {.path = path, .facing = facing, .skip = skip, .after = hits});
-    fence.expect_intact("next hits");
-    some = false;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Hit wanted = layer < expected.hits[i].size() ? expected.hits[i][layer] : Hit();
-      if (!same_bytes(wanted, hits[i]))
-        fail(std::string(path->name) + ": ray " + std::to_string(i) + ": next hit " + std::to_string(layer));
-      some = some || hits[i];
-    }
   }
 }
 
@@ -133,80 +53,6 @@ void expect_locations(const Tree& tree, const Mesh& mesh, const std::vector<Ray>
   }
 }
 
-// Whether the sum over all triangles, which has no digits near edges, has the number within the accuracy.
-bool is_winding(const Mesh& mesh, const Float3& point, float number, double accuracy) {
-  const SummedWinding sum(mesh, point);
-  const long double edges = 3.0L * static_cast<long double>(mesh.triangles.size());
-  const long double bound =
-      accuracy + 0x1p-24L * std::abs(sum.number) + 0x1p-40L * edges + 0x1p-100L + 2048 * sum.error;
-  return !(sum.error < 0x1p-40L) || std::abs(static_cast<long double>(number) - sum.number) <= bound;
-}
-
-// Numbers of any points: finite, at most the number of triangles in size, equal to sums over all triangles, and the
-// same bytes on the path scalar.
-template <class Tree>
-void expect_windings(const Tree& tree, const Mesh& mesh, const std::vector<Ray>& rays,
-                     const WindingOptions& options, bool is_exact) {
-  static Fence fence(max_queries * sizeof(float));
-  const std::span<float> numbers(fence.last<float>(rays.size()), rays.size());
-  const VertexView points(rays.data(), rays.size(), sizeof(Ray));
-  tree.winding_numbers(points, numbers, options);
-  fence.expect_intact("winding numbers");
-  std::vector<float> scalar(rays.size());
-  tree.winding_numbers(points, scalar, {.accuracy = options.accuracy, .path = &paths().front()});
-  if (is_exact && !same_bytes(numbers, scalar)) fail("winding numbers depend on the path");
-  const float most = static_cast<float>(mesh.triangles.size()) + static_cast<float>(options.accuracy) + 1;
-  for (const float number : numbers)
-    if (!(std::abs(number) <= most)) fail("a winding number of too many turns");
-  for (std::size_t i = 0; is_exact && i < rays.size(); ++i)
-    if (is_finite(rays[i].origin) && !is_on_edge(mesh, rays[i].origin) &&
-        !is_winding(mesh, rays[i].origin, numbers[i], options.accuracy))
-      fail("point " + std::to_string(i) + " has not the winding number of the sum over all triangles");
-}
-
-// Inactive elements lie behind the page that nobody may touch.
-template <class Tree>
-void expect_active_alone(const Tree& tree, const std::vector<Ray>& rays, const Path* path, InsideRule rule) {
-  constexpr std::size_t behind = 120;
-  const std::size_t all = rays.size() + behind;
-  std::vector<std::uint8_t> mask(all / 8 + 1, 0);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
-  static Fence ray_fence(max_queries * sizeof(Ray)), closest_fence(max_queries * sizeof(ClosestPoint)),
-      hit_fence(max_queries * sizeof(Hit)), number_fence(max_queries * sizeof(float));
-  Ray* const first = ray_fence.last<Ray>(rays.size());
-  std::copy(rays.begin(), rays.end(), first);
-  const RayView view(first, all);
-  const VertexView points(first, all, sizeof(Ray));
-  const std::span numbers(number_fence.last<float>(rays.size()), all);
-  const LaneBits active = mask.data();
-  tree.closest(view, HitView(hit_fence.last<Hit>(rays.size()), all), {.path = path, .active = active});
-  const auto hits = tree.all_hits(view, {.path = path, .active = active});
-  if (hits.offsets[rays.size()] != hits.items.size()) fail("inactive rays have hits");
-  tree.closest_points(points, {closest_fence.last<ClosestPoint>(rays.size()), all},
-                      {.path = path, .active = active});
-  tree.winding_numbers(points, numbers, {.path = path, .active = active});
-  tree.signed_distances(points, numbers, {.rule = rule, .path = path, .active = active});
-  number_fence.expect_intact("numbers of active points");
-}
-
-// Calls that run out of memory leave the tree as it is: later checks ask it.
-template <class Tree>
-void run_out_of_memory(Bytes& bytes, const Tree& tree, const std::vector<Ray>& rays, InsideRule rule) {
-  std::vector<float> numbers(rays.size());
-  std::vector<CrossingCount> counts(rays.size());
-  const VertexView points(rays.data(), rays.size(), sizeof(Ray));
-  runs_out(
-      bytes.below(40), unlimited,
-      [&] {
-        tree.all_hits(rays), tree.crossings(rays);
-        tree.winding_numbers(points, numbers);
-        tree.signed_distances(points, numbers, {.rule = rule});
-        tree.count_crossings(rays, counts);
-      },
-      bytes.chance(128));
-}
-
 // A vertex, the middle of two, or a point in the plane of three: of triangles, of chords between corners of a boundary,
 // and of caps.
 Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
@@ -216,20 +62,6 @@ Float3 at_or_between(Bytes& bytes, const std::vector<Float3>& vertices) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     point[axis] = 0.5f * a[axis] + (0.25f * b[axis] + 0.25f * c[axis]);
   return point;
-}
-
-// Triangles by any names: as the mesh has them, bit for bit, or NaN.
-template <class Tree>
-void expect_corners(const Tree& tree, const Mesh& mesh, const std::vector<std::uint32_t>& names) {
-  std::vector<Triangle> triangles(names.size());
-  tree.corners(names, triangles);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const Triangle& found = triangles[k];
-    if (std::isnan(found.corner[0][0])) continue;
-    if (names[k] >= mesh.triangles.size() ||
-        !same_bytes(found, triangle_of(mesh.vertices, mesh.triangles[names[k]])))
-      fail("corners of another triangle");
-  }
 }
 
 }  // namespace
@@ -270,7 +102,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
     placement.move(vertex);
     for (float& x : vertex) x = finite(x);
   }
-  Expected expected;
+  ExpectedLists<float> expected;
   const bool skips = bytes.chance(96);
   std::vector<std::uint32_t> skip;
   for (const Ray& ray : rays) {

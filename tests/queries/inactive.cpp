@@ -6,6 +6,7 @@
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
 
+#include "../doubles/both_numbers.hpp"
 #include "../support/system/guard_pages.hpp"
 #include "query_trees.hpp"
 
@@ -84,9 +85,16 @@ struct Elements {
     });
   }
   RayView view() { return {rays.data(), all}; }
-  RayViewD double_view() { return {double_rays.data(), all}; }
   VertexView places() { return {points.data(), all, sizeof(Float3)}; }
-  VertexViewD double_places() { return {double_points.data(), all, sizeof(Double3)}; }
+  // Views of rays and points of numbers T.
+  template <class T>
+  auto of() {
+    if constexpr (std::is_same_v<T, float>)
+      return std::pair(view(), places());
+    else
+      return std::pair(RayViewD(double_rays.data(), all),
+                       VertexViewD(double_points.data(), all, sizeof(Double3)));
+  }
 };
 
 const auto reject_some = [](std::span<const std::size_t> rays, auto, std::span<std::uint8_t> rejected) {
@@ -115,82 +123,59 @@ void trace_all(const Tree& tree, const Rays& rays, const Points& points, const P
   EXPECT_GT(found, 20u);
 }
 
-template <class Tree, class Rays, class Points>
-void list_and_locate(const Tree& tree, const Rays& rays, const Points& points, const Path* path,
-                     int threads) {
-  const ListOptions options{.path = path, .threads = threads, .active = mask.data()};
-  PagedArray<CrossingCount> counts;
-  PagedArray<Location> locations;
-  EXPECT_GT(tree.all_hits(rays, options).items.size(), 40u);
-  EXPECT_GT(tree.crossings(rays, options).items.size(), 40u);
-  tree.count_crossings(rays, counts.span(), options);
-  for (const InsideRule rule :
-       {InsideRule::parity, InsideRule::nonzero, InsideRule::vote, InsideRule::winding}) {
-    tree.locate(points, locations.span(),
-                {.rule = rule, .path = path, .threads = threads, .active = mask.data()});
-    std::size_t inside = 0;
-    PagedArray<Location>::each([&](std::size_t i) { inside += locations[i] == Location::inside ? 1 : 0; });
-    EXPECT_GT(inside, 10u);
-  }
-}
-
-template <class Tree>
+// All calls of a tree of numbers T; trees of floats also in each mode, and of rays as arrays.
+template <class T, class Tree>
 void ask_all(Elements& elements, const Tree& tree) {
+  const auto views = elements.of<T>();
+  const auto& rays = views.first;
+  const auto& points = views.second;
   on_each_path([&](const Path* path, int threads) {
-    for (const TraversalMode mode :
-         {TraversalMode::automatic, TraversalMode::packet, TraversalMode::stream}) {
-      const TraceOptions options{.mode = mode, .path = path, .threads = threads, .active = mask.data()};
-      trace_all<Hit>(tree, elements.view(), elements.places(), Float3{}, options);
+    TraceOptionsOf<T> options{.path = path, .threads = threads, .active = mask.data()};
+    if constexpr (std::is_same_v<T, float>) {
+      for (const TraversalMode mode : {TraversalMode::packet, TraversalMode::stream}) {
+        options.mode = mode;
+        trace_all<Hit>(tree, rays, points, Float3{}, options);
+      }
+      options.mode = TraversalMode::automatic;
       PagedArray<Hit> hits;
       PagedArray<std::uint8_t> occluded;
       tree.closest(elements.arrays, HitView(hits.data(), all), options);
       tree.occluded(elements.arrays, occluded.span(), options);
     }
-    list_and_locate(tree, elements.view(), elements.places(), path, threads);
-    PagedArray<ClosestPoint> closest;
-    PagedArray<float> numbers;
-    tree.closest_points(elements.places(), closest.span(),
-                        {.path = path, .threads = threads, .active = mask.data()});
-    tree.winding_numbers(elements.places(), numbers.span(),
-                         {.path = path, .threads = threads, .active = mask.data()});
-    tree.signed_distances(elements.places(), numbers.span(),
-                          {.path = path, .threads = threads, .active = mask.data()});
-    PagedArray<ClosestPoint>::each([&](std::size_t i) { ASSERT_TRUE(closest[i]); });
+    trace_all<HitOf<T>>(tree, rays, points, PointOf<T>{}, options);
+    const ListOptions lists{.path = path, .threads = threads, .active = mask.data()};
+    PagedArray<CrossingCount> counts;
+    EXPECT_GT(tree.all_hits(rays, lists).items.size(), 40u);
+    EXPECT_GT(tree.crossings(rays, lists).items.size(), 40u);
+    tree.count_crossings(rays, counts.span(), lists);
+    PagedArray<Location> locations;
+    for (std::size_t rule = 0; rule < inside_rule_names.size(); ++rule) {
+      tree.locate(points, locations.span(),
+                  {.rule = InsideRule(rule), .path = path, .threads = threads, .active = mask.data()});
+      std::size_t inside = 0;
+      PagedArray<Location>::each([&](std::size_t i) { inside += locations[i] == Location::inside ? 1 : 0; });
+      EXPECT_GT(inside, 10u);
+    }
+    PagedArray<ClosestPointOf<T>> closest;
+    PagedArray<T> numbers;
+    tree.closest_points(points, closest.span(), {.path = path, .threads = threads, .active = mask.data()});
+    tree.winding_numbers(points, numbers.span(), {.path = path, .threads = threads, .active = mask.data()});
+    tree.signed_distances(points, numbers.span(), {.path = path, .threads = threads, .active = mask.data()});
+    PagedArray<T>::each([&](std::size_t i) {
+      const auto distance = std::sqrt(closest[i].distance_squared);
+      ASSERT_TRUE(closest[i] && (numbers[i] == 0 || std::abs(std::abs(numbers[i]) - distance) < 1e-6));
+    });
   });
 }
 
 TEST(Inactive, elements_of_trees_are_not_touched) {
   Elements elements;
-  for (const Mesh& mesh : {cube(-1, 1), without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 302)}) {
-    ask_all(elements, Bvh(mesh));
-    ask_all(elements, KdTree(mesh));
+  const Mesh open = without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 302);
+  for (const Mesh& mesh : {cube(-1, 1), open}) {
+    ask_all<float>(elements, Bvh(mesh));
+    ask_all<float>(elements, KdTree(mesh));
   }
-}
-
-TEST(Inactive, elements_of_trees_of_doubles_are_not_touched) {
-  Elements elements;
-  const Mesh mesh = without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 302);
-  std::vector<Double3> vertices;
-  for (const Float3& vertex : mesh.vertices)
-    vertices.push_back({double{vertex[0]}, double{vertex[1]}, double{vertex[2]}});
-  const BvhD tree(vertices, mesh.triangles);
-  on_each_path([&](const Path* path, int threads) {
-    trace_all<HitD>(tree, elements.double_view(), elements.double_places(), Double3{},
-                    TraceOptionsD{.path = path, .threads = threads, .active = mask.data()});
-    list_and_locate(tree, elements.double_view(), elements.double_places(), path, threads);
-    PagedArray<double> numbers;
-    tree.winding_numbers(elements.double_places(), numbers.span(),
-                         {.path = path, .threads = threads, .active = mask.data()});
-    PagedArray<ClosestPointD> closest;
-    PagedArray<double> distances;
-    tree.closest_points(elements.double_places(), closest.span(),
-                        {.path = path, .threads = threads, .active = mask.data()});
-    tree.signed_distances(elements.double_places(), distances.span(),
-                          {.path = path, .threads = threads, .active = mask.data()});
-    PagedArray<ClosestPointD>::each([&](std::size_t i) {
-      ASSERT_TRUE(closest[i] && (distances[i] == 0 || std::abs(distances[i]) == closest[i].distance));
-    });
-  });
+  ask_all<double>(elements, tree_of<double>(mesh_of<double>(open)));
 }
 
 TEST(Inactive, elements_of_scenes_are_not_touched) {

@@ -1,78 +1,119 @@
 // Which points are inside: against rational numbers, and by what must hold whatever the direction.
 #include <raylanes/closed_mesh.hpp>
 
-#include "query_trees.hpp"
+#include "worlds/worlds.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-std::size_t expect_locations(const Mesh& mesh, const std::vector<Float3>& points, bool also_flushed = true) {
+// By the crossings of another ray than the library's; of doubles in closed meshes, where all rules agree.
+Location location_of(const Mesh& mesh, const Float3& point, InsideRule rule) {
+  return oracle::exact_location(mesh.vertices, mesh.triangles, point, {3, -7, 2}, rule);
+}
+Location location_of(const DoubleMesh& mesh, const Double3& point, InsideRule) {
+  return exact_location(mesh, point);
+}
+
+template <class AnyMesh, class Point = typename decltype(AnyMesh::vertices)::value_type>
+std::size_t expect_locations(const AnyMesh& mesh, const std::vector<std::type_identity_t<Point>>& points,
+                             bool may_flush = true) {
+  constexpr bool has_floats = std::is_same_v<Point, Float3>;
   std::size_t on = 0;
   for (const InsideRule rule : {InsideRule::parity, InsideRule::nonzero, InsideRule::vote}) {
     if (rule != InsideRule::vote && !closed_report(mesh.vertices, mesh.triangles).has_winding_numbers())
       continue;  // they depend on a direction
     SCOPED_TRACE(inside_rule_names[static_cast<std::size_t>(rule)]);
     std::vector<Location> expected;
-    for (const Float3& point : points) {
-      expected.push_back(oracle::exact_location(mesh.vertices, mesh.triangles, point, {3, -7, 2}, rule));
+    for (const Point& point : points) {
+      expected.push_back(location_of(mesh, point, rule));
       on += expected.back() == Location::on ? 1 : 0;
     }
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       for (const FloatMode mode : float_modes) {
-        if (mode == FloatMode::flush && !also_flushed) continue;
+        if (mode == FloatMode::flush && !(may_flush && has_floats)) continue;
         const FloatModeScope scope(mode);
         std::vector<Location> locations(points.size());
-        tree.locate(points, locations, {.rule = rule, .path = path});
-        std::size_t wrong = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) wrong += locations[i] == expected[i] ? 0 : 1;
-        EXPECT_EQ(wrong, 0u) << name_of(mode);
+        tree.locate(points, locations, {.rule = rule, .path = path, .threads = 2});
+        for (std::size_t i = 0; i < points.size(); ++i)
+          ASSERT_EQ(locations[i], expected[i]) << name_of(mode) << ", point " << i;
       }
     });
   }
   return on;
 }
 
-TEST(Locate, points_in_on_and_outside_of_closed_meshes) {
-  for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), double_fan(30, 0.0f), cube(-1, 1)})
-    EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(500), 1.5f, 51)), 20u);
-}
-
-TEST(Locate, nested_and_overlapping_shells_by_either_rule) {
-  Mesh mesh = cube(-1, 1);
-  append(mesh, cube(-0.5f, 0.5f));  // pointing out: solid in solid
-  append(mesh, cube(0, 2));         // overlaps
-  Mesh hole = cube(-0.25f, 0.25f);
-  for (Index3& t : hole.triangles) std::swap(t[1], t[2]);
-  append(mesh, hole);
-  EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(600), 2.5f, 52)), 20u);
-}
-
-// The points of a mesh from 1e-30 to 1.5e38 in size, points_of(mesh, scaling), are located rightly.
-template <class PointsOf>
-void at_each_scale(const PointsOf& points_of) {
-  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
-    SCOPED_TRACE(scaling);
-    Mesh mesh = double_fan(12, 0.25f);
-    scale(mesh, scaling);
-    expect_locations(mesh, points_of(mesh, scaling), scaling > 1e-20f);
+// As it is with floats; of doubles also where no coordinate is a float.
+struct Placement {
+  double size;
+  Double3 offset;
+};
+template <class T>
+void expect_at_places(const Mesh& mesh, const std::vector<Float3>& points, std::size_t min_on,
+                      const std::vector<Placement>& of_doubles) {
+  if constexpr (std::is_same_v<T, float>) {
+    EXPECT_GT(expect_locations(mesh, points), min_on);
+  } else {
+    for (const Placement& place : of_doubles) {
+      SCOPED_TRACE(place.size);
+      const DoubleMesh doubles = moved(mesh, place.size, place.offset);
+      std::vector<Double3> some = doubles.vertices;
+      const std::vector<Double3> others = moved({points, {}}, place.size, place.offset).vertices;
+      some.insert(some.end(), others.begin(), others.begin() + std::ssize(others) / 3);
+      EXPECT_GE(expect_locations(doubles, some), doubles.vertices.size());
+    }
   }
 }
 
-TEST(Locate, points_in_lines_in_on_and_outside_of_closed_meshes) {
+template <class T>
+class Locate : public ::testing::Test {};
+TYPED_TEST_SUITE(Locate, Numbers, NumberNames);
+
+TYPED_TEST(Locate, points_in_on_and_outside_of_closed_meshes) {
+  for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), double_fan(30, 0.0f), cube(-1, 1)})
+    expect_at_places<TypeParam>(mesh, points_around(mesh, by_level(500), 1.5f, 51), 20,
+                                {{1, {0, 0, 0}}, {1e-3, {5e6, -4e6, 1e5}}, {3, {1e15, 7, -2e15}}});
+}
+
+Mesh nested_cubes() {
+  Mesh mesh = cube(-1, 1);
+  append(mesh, cube(-0.5f, 0.5f));  // pointing out: solid in solid
+  append(mesh, cube(0, 2));         // overlaps
+  return mesh;
+}
+
+TEST(LocateFloats, nested_and_overlapping_shells_by_either_rule) {
+  Mesh mesh = nested_cubes();
+  append(mesh, turned_over(cube(-0.25f, 0.25f), 1, 1));
+  EXPECT_GT(expect_locations(mesh, points_around(mesh, by_level(600), 2.5f, 52)), 20u);
+}
+
+// In a cube whose sides are longer than the largest number, which rays to its far side cross beyond that.
+TYPED_TEST(Locate, at_all_scales) {
+  using T = TypeParam;
+  const Mesh unit = double_fan(12, 0.25f);
+  std::vector<Float3> points = points_around(unit, by_level(200), 1.5f, 53);
+  for (const Float3& point : points_in_lines(unit, by_level(200), 1.25f, 61)) points.push_back(point);
+  if constexpr (std::is_same_v<T, double>)
+    return expect_at_places<T>(
+        unit, points, 0, {{0x1p-900, {}}, {0x1p-250, {}}, {0x1p-130, {}}, {0x1p130, {}}, {0x1p1000, {}}});
+  for (const float scaling : {1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
+    SCOPED_TRACE(scaling);
+    Mesh mesh = unit, at{points, {}};
+    scale(mesh, scaling), scale(at, scaling);
+    expect_locations(mesh, at.vertices, scaling > 1e-20f);
+  }
+}
+
+TEST(LocateFloats, points_in_lines_in_on_and_outside_of_closed_meshes) {
   for (const Mesh& mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), cube(-1, 1)})
     EXPECT_GT(expect_locations(mesh, points_in_lines(mesh, by_level(1200), 1.5f, 59)), 10u);
-  Mesh nested = cube(-1, 1);
-  append(nested, cube(-0.5f, 0.5f));
-  append(nested, cube(0, 2));
+  const Mesh nested = nested_cubes();
   EXPECT_GT(expect_locations(nested, points_in_lines(nested, by_level(1200), 2.5f, 60)), 10u);
-  at_each_scale([](const Mesh& mesh, float scaling) {
-    return points_in_lines(mesh, by_level(200), 1.25f * scaling, 61);
-  });
 }
 
 // A direction that matters is the line's, upwards, for each point that has a neighbour on it: whether floats decide the
 // line or not, on every path, and for any number of threads.
-TEST(Locate, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
+TEST(LocateFloats, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
   Random random(62);
   Mesh mesh = ellipsoid(1, {0, 0, 0});
   append(mesh, triangle_soup(40, 1.0f, 63));
@@ -116,7 +157,7 @@ TEST(Locate, points_in_lines_of_open_meshes_by_the_direction_of_their_line) {
 }
 
 // In a box without a lid, five of six rays say inside; above the rim, one of six does.
-TEST(Locate, a_box_without_a_lid_by_vote) {
+TEST(LocateFloats, a_box_without_a_lid_by_vote) {
   Mesh box = cube(-1, 1);
   std::erase_if(box.triangles, [&](const Index3& t) {
     return std::ranges::all_of(t, [&](std::uint32_t corner) { return box.vertices[corner][2] > 0; });
@@ -136,7 +177,7 @@ TEST(Locate, a_box_without_a_lid_by_vote) {
   EXPECT_GT(expect_locations(box, points_around(box, by_level(300), 1.5f, 56)), 10u);
 }
 
-TEST(Locate, meshes_with_holes_by_vote) {
+TEST(LocateFloats, meshes_with_holes_by_vote) {
   Random random(57);
   for (Mesh mesh : {ellipsoid(1, {0, 0, 0}), double_fan(30, 0.25f), cube(-1, 1)}) {
     std::erase_if(mesh.triangles, [&](const Index3&) { return random.chance(0.15); });
@@ -146,7 +187,7 @@ TEST(Locate, meshes_with_holes_by_vote) {
 }
 
 // Three walls that meet in a corner: of its rays those to the walls cross them, three of six, and that is no majority.
-TEST(Locate, three_votes_of_six_are_outside) {
+TEST(LocateFloats, three_votes_of_six_are_outside) {
   const Mesh corner{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}};
   const std::vector<Float3> points = {{0.25f, 0.25f, 0.25f}};
   Location location = Location::on;
@@ -158,40 +199,34 @@ TEST(Locate, three_votes_of_six_are_outside) {
   EXPECT_EQ(location, Location::inside);
 }
 
-TEST(Locate, at_scales_of_1e_30_and_1e30) {
-  at_each_scale(
-      [](const Mesh& mesh, float scaling) { return points_around(mesh, by_level(200), 1.5f * scaling, 53); });
-}
-
-// The public threads on points whose rays graze a cube's edges.
-// Rays to the far side of the cube cross it farther away than the largest float.
-TEST(Locate, in_a_cube_of_all_floats) {
-  constexpr float half = 3.25e38f;
-  const Mesh mesh = cube(-half, half);
+TYPED_TEST(Locate, in_a_cube_of_all_numbers) {
+  using T = TypeParam;
+  constexpr T most = std::numeric_limits<T>::max();
+  const auto share = [&](Random& random) { return static_cast<T>(random.real(-1, 1)) * T(0.94) * most; };
+  auto mesh = mesh_of<T>(cube(-1, 1));
+  for (auto& vertex : mesh.vertices)
+    for (T& x : vertex) x *= T(0.955) * most;
   Random random(65);
-  std::vector<Float3> points;
+  std::vector<PointOf<T>> points;
   for (std::size_t i = 0; i < by_level(1000); ++i) {
-    Float3 point = random.point(1);
-    for (float& x : point) x *= 3.2e38f;
-    points.push_back(point);
-    for (int k = 0; k < 5; ++k) point[i % 3] = random.number(-1, 1) * 3.2e38f, points.push_back(point);
+    PointOf<T> point{share(random), share(random), share(random)};
+    for (int k = 0; k < 6; ++k) points.push_back(point), point[i % 3] = share(random);
   }
   each_tree(mesh, [&](const auto& tree, const Path* path) {
     std::vector<Location> locations(points.size());
-    for (const InsideRule rule :
-         {InsideRule::parity, InsideRule::nonzero, InsideRule::vote, InsideRule::winding}) {
-      tree.locate(points, locations, {.rule = rule, .path = path});
+    for (std::size_t rule = 0; rule < inside_rule_names.size(); ++rule) {
+      tree.locate(points, locations, {.rule = static_cast<InsideRule>(rule), .path = path});
       EXPECT_EQ(std::ranges::count(locations, Location::inside), std::ssize(points))
-          << inside_rule_names[static_cast<std::size_t>(rule)];
+          << inside_rule_names[rule];
     }
-    std::vector<float> numbers(points.size());
+    std::vector<T> numbers(points.size());
     tree.winding_numbers(points, numbers, {.path = path});
-    EXPECT_EQ(numbers, std::vector<float>(points.size(), 1.0f));
+    EXPECT_EQ(numbers, std::vector<T>(points.size(), 1));
   });
 }
 
 // A larger box, divided finely: each ray from the middle through one of its vertices leaves it once.
-TEST(Locate, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
+TEST(LocateFloats, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
   Mesh mesh;
   constexpr int cells = 12;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -223,7 +258,7 @@ TEST(Locate, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
   });
 }
 
-TEST(Locate, takes_any_points) {
+TEST(LocateFloats, takes_any_points) {
   const Mesh mesh = cube(-1, 1);
   const Bvh bvh(mesh);
   const std::vector<Float3> points = {{nan, 0, 0},       {0, infinity, 0}, {0, 0, -infinity}, {0, 0, 0},

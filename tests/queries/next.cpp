@@ -1,83 +1,10 @@
-// Next hits, and filters made of them: asked for again and again they are all hits, in order.
-#include "../oracles/peeled.hpp"
+// Filters: which hits they see, in which order, and what they may do.
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-// Peels all hits of all rays off by next hits, and compares with the lists of rational numbers.
-void expect_layers(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
-  std::vector<std::vector<Hit>> expected;
-  for (const Ray& ray : rays) expected.push_back(oracle_hits(mesh, ray));
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    for (const FloatMode mode : float_modes) {
-      if (mode == FloatMode::flush && !also_flushed) continue;
-      const FloatModeScope scope(mode);
-      for (const int threads : {1, 2}) {
-        const TraceOptions options{.mode = threads == 1 ? TraversalMode::automatic : TraversalMode::stream,
-                                   .path = path,
-                                   .threads = threads};
-        const auto closest = [&](auto&&... call) { return tree.closest(call...); };
-        EXPECT_GT(expect_peeled(rays, expected, options, closest), 0u) << name_of(mode);
-      }
-    }
-  });
-}
-
-TEST(NextHit, peels_random_meshes) {
-  const Mesh mesh = triangle_soup(by_level(200), 0.5f, 61);
-  expect_layers(mesh, aimed_rays(mesh, by_level(200), 2, 62));
-}
-
-TEST(NextHit, peels_lattices_coincident_triangles_and_edges) {
-  expect_layers(lattice_walls(2), lattice_rays(2, by_level(300), 63));
-  Mesh mesh = double_fan(30, 0.25f);
-  append(mesh, mesh);
-  append(mesh, cube(-1, 1));
-  expect_layers(mesh, aimed_rays(mesh, by_level(200), 3, 64));
-}
-
-TEST(NextHit, peels_at_scales_of_1e_30_and_1e30) {
-  for (const float scaling : {1e-30f, 1e12f, 1e30f}) {
-    const ScaledScene scene(60, 100, 65, scaling);
-    expect_layers(scene.mesh, scene.rays, ScaledScene::numbers_hold_at(scaling));
-  }
-}
-
-// Layers whose t differ by an ULP or not at all.
-TEST(NextHit, peels_layers_that_round_to_one_t) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i < by_level(30u, 60u, 60u); ++i) {
-    const float z = std::ldexp(static_cast<float>(i % 20), -30);
-    append(mesh, {-4, -4, z}, {8, -4, z}, {-4, 8, z});
-  }
-  Random random(67);
-  std::vector<Ray> rays;
-  for (std::size_t i = 0; i < by_level(120); ++i)
-    rays.push_back(make_ray({random.number(-1, 1), random.number(-1, 1), -1},
-                            {random.number(-1, 1), random.number(-1, 1), random.number(0.5f, 2)}));
-  expect_layers(mesh, rays);
-}
-
-TEST(NextHit, behind_odd_hits) {
-  const Mesh mesh = cube(-1, 1);
-  const Bvh bvh(mesh);
-  const Ray ray = make_ray({0.1f, 0.2f, 5}, {0, 0, -1});
-  const auto after = [&](Hit hit) { return bvh.closest(ray, {.after = HitView(&hit, 1)}).t; };
-  EXPECT_EQ(after({-infinity, 0, 0, 0}), 4);
-  EXPECT_EQ(after({-7, 0, 0, 3}), 4);
-  EXPECT_EQ(after({4, 0, 0, 0}), 4);
-  EXPECT_EQ(after({4, 0, 0, no_primitive}), 6);
-  EXPECT_EQ(after({6, 0, 0, no_primitive}), infinity);
-  EXPECT_EQ(after(Hit()), infinity);
-  EXPECT_EQ(after({nan, 0, 0, 0}), infinity);
-  Hit hits[2];
-  EXPECT_THROW(bvh.closest(ray, {.after = hits}), std::invalid_argument);
-  EXPECT_THROW(bvh.closest(ray, {.test = TriangleTest::watertight, .after = HitView(hits, 1)}),
-               std::invalid_argument);
-}
 
 // Triangles that a rule leaves out: as if the mesh did not have them.
 TEST(Filters, leave_out_triangles) {
@@ -109,13 +36,9 @@ TEST(Filters, leave_out_triangles) {
   });
 }
 
-TEST(Filters, are_taken_by_every_call) {
-  const Mesh mesh = triangle_soup(by_level(300), 0.5f, 77);
-  const std::vector<Ray> rays = aimed_rays(mesh, by_level(300), 2, 78);
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    expect_filtered<Hit>(tree, rays, TraceOptions{.path = path},
-                         [&](const Ray& ray) { return oracle_hits(mesh, ray); });
-  });
+TEST(Filters, of_one_ray_take_the_options_of_a_call) {
+  const Mesh mesh = triangle_soup(300, 0.5f, 77);
+  const std::vector<Ray> rays = aimed_rays(mesh, 60, 2, 78);
   const Bvh bvh(mesh);
   const auto none = [](const Hit&) { return false; };
   EXPECT_THROW(bvh.closest(rays[0], none, {.test = TriangleTest::watertight}), std::invalid_argument);

@@ -3,38 +3,43 @@
 
 #include <cmath>
 
-#include <raylanes/closed_mesh.hpp>
-
 #include "query_trees.hpp"
 #include "summed_winding.hpp"
 
 namespace raylanes::testing {
 
-inline std::size_t boundary_edges(const Mesh& mesh) {
-  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
-  return report.open + 2 * report.inconsistent;
-}
-
-// Without those on edges and corners of the mesh, where numbers have no limit.
-inline std::vector<Float3> points_off_edges(const Mesh& mesh, std::vector<Float3> points) {
-  std::erase_if(points, [&](const Float3& point) { return is_on_edge(mesh, point); });
+// In the box of the mesh, and beside it by up to a quarter.
+inline std::vector<Double3> points_around(const oracle::DoubleMesh& mesh, std::size_t count,
+                                          std::uint64_t seed) {
+  Random random(seed);
+  const BoxD box = BvhD(mesh.vertices, mesh.triangles).bounds();
+  std::vector<Double3> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    Double3& point = points.emplace_back();
+    const double share[] = {random.real(-0.25, 1.25), random.real(-0.25, 1.25), random.real(-0.25, 1.25)};
+    for (std::size_t k = 0; k < 3; ++k) point[k] = (1 - share[k]) * box.lo[k] + share[k] * box.hi[k];
+  }
   return points;
 }
 
-// Numbers of each accuracy, on every path and tree: within the bound, the same bytes. Returns how many points were far
-// from integers.
-inline std::size_t expect_windings(const Mesh& mesh, const std::vector<Float3>& given) {
-  const std::vector<Float3> points = points_off_edges(mesh, given);
-  const double edges = static_cast<double>(boundary_edges(mesh));
+// Expects numbers of each accuracy, on every path and tree, within the bound and with the same bytes. Leaves out
+// points on edges and corners, where numbers have no limit. Returns how many points were far from integers.
+template <class AnyMesh, class Point = typename decltype(AnyMesh::vertices)::value_type>
+std::size_t expect_windings(const AnyMesh& mesh, std::vector<std::type_identity_t<Point>> points,
+                            bool may_flush = true) {
+  using T = typename Point::value_type;
+  std::erase_if(points, [&](const Point& point) { return is_on_edge(mesh, point); });
+  const double edges = boundary_edges(mesh);
   std::vector<SummedWinding> expected;
-  for (const Float3& point : points) expected.emplace_back(mesh, point);
+  for (const Point& point : points) expected.emplace_back(mesh, point);
   for (const double accuracy : {0.0, 1e-6, 1e-3, 0.1}) {
     SCOPED_TRACE(accuracy);
-    std::vector<float> first;
+    std::vector<T> first;
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       for (const FloatMode mode : float_modes) {
+        if (mode == FloatMode::flush && !may_flush) continue;
         const FloatModeScope scope(mode);
-        std::vector<float> numbers(points.size(), -99.0f);
+        std::vector<T> numbers(points.size(), -99);
         tree.winding_numbers(points, numbers, {.accuracy = accuracy, .path = path});
         if (first.empty()) first = numbers;
         EXPECT_TRUE(same_bytes(numbers, first)) << name_of(mode);
@@ -42,14 +47,12 @@ inline std::size_t expect_windings(const Mesh& mesh, const std::vector<Float3>& 
     });
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const long double w = expected[i].number, off = std::abs(static_cast<long double>(first[i]) - w);
-      // The sum's own error is that of numbers with 64 bits: ours may be 2^11 times that.
-      const long double bound =
-          accuracy + 0x1p-24L * std::abs(w) + 0x1p-40L * edges + 0x1p-100L + 2048 * expected[i].error;
+      const long double off = std::abs(static_cast<long double>(first[i]) - expected[i].number),
+                        bound = bound_of_winding<T>(expected[i], accuracy, edges);
       if (!(off <= bound) && ++wrong < 4)
-        ADD_FAILURE() << "point " << i << ": " << first[i] << ", not " << static_cast<double>(w)
-                      << ", off by " << static_cast<double>(off) << " where " << static_cast<double>(bound)
-                      << " is allowed";
+        ADD_FAILURE() << "point " << i << ": " << first[i] << ", not "
+                      << static_cast<double>(expected[i].number) << ", off by " << static_cast<double>(off)
+                      << " where " << static_cast<double>(bound) << " is allowed";
     }
     EXPECT_EQ(wrong, 0u);
   }

@@ -1,69 +1,9 @@
 // The next passage of rays through a surface: each once at edges and corners, and nowhere where rays only touch.
 #include "../oracles/passage_oracle.hpp"
-#include "../oracles/peeled.hpp"
-#include "../support/filtered.hpp"
-#include "query_trees.hpp"
+#include "worlds/worlds.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-void expect_passages(const PassingRays<Mesh, Ray>& of, bool also_flushed = true) {
-  std::size_t found = 0;
-  for (const Facing facing : {Facing::any, Facing::front, Facing::back})
-    for (const bool skips : {false, true}) {
-      const auto expected = of.passages(facing, skips);
-      each_tree(of.mesh, [&](const auto& tree, const Path* path) {
-        for (const FloatMode mode : float_modes) {
-          if (mode == FloatMode::flush && !also_flushed) continue;
-          const FloatModeScope scope(mode);
-          for (const TraversalMode how :
-               {TraversalMode::single, TraversalMode::packet, TraversalMode::stream}) {
-            TraceOptions options{.mode = how, .path = path, .facing = facing};
-            options.threads = how == TraversalMode::stream ? 2 : 1;
-            if (skips) options.skip = of.skip;
-            found += expect_peeled(of.rays, expected, options, passages_of(tree, of.rays, of.skip));
-          }
-        }
-      });
-    }
-  EXPECT_GT(found, of.rays.size());
-}
-
-TEST(Passages, of_random_meshes) {
-  const Mesh mesh = triangle_soup(by_level(150), 0.5f, 201);
-  expect_passages({mesh, aimed_rays(mesh, by_level(120), 2, 202)});
-}
-
-// A cube from -2 to 2 whose side up z has a dent: a pyramid with its tip at the origin, its edges along diagonals.
-Mesh dented_cube() {
-  Mesh mesh = cube(-2, 2);
-  std::erase_if(mesh.triangles, [&](const Index3& t) {
-    return std::ranges::all_of(t, [&](std::uint32_t i) { return mesh.vertices[i][2] == 2; });
-  });
-  const Float3 rim[] = {{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2}};
-  for (std::size_t k = 0; k < 4; ++k) append(mesh, make_triangle(rim[k], rim[(k + 1) % 4], {0, 0, 0}));
-  return mesh;
-}
-
-TEST(Passages, of_lattices_dents_and_coincident_triangles) {
-  const PassingRays lattice(lattice_walls(2), lattice_rays(2, by_level(200), 203));
-  expect_passages(lattice);
-  EXPECT_GT(lattice.touches, lattice.rays.size() / 20);
-  Mesh mesh = dented_cube();
-  append(mesh, cube(-1, 1));
-  append(mesh, cube(0, 1));
-  append(mesh, turned_over(mesh, 0.5, 209));
-  const PassingRays touching(mesh, touching_rays(mesh, by_level(150), 204));
-  expect_passages(touching);
-  EXPECT_GT(touching.touches, touching.rays.size());
-}
-
-TEST(Passages, at_scales_of_1e_30_and_1e30) {
-  for (const float scaling : {1e-30f, 1e30f}) {
-    ScaledScene scene(40, 80, 205, scaling);
-    expect_passages({scene.mesh, scene.rays}, ScaledScene::numbers_hold_at(scaling));
-  }
-}
 
 // A closed mesh that does not cross itself is entered and left by turns, and left at last, though passages of one
 // rounded t come in any order.
@@ -171,42 +111,6 @@ TEST(Passages, of_a_sheet_thinner_than_an_ulp) {
     passed.push_back(hit);
   ASSERT_EQ(passed.size(), 2u);
   EXPECT_EQ(passed[0].t, passed[1].t);
-}
-
-TEST(Passages, of_arrays_strides_and_active_rays) {
-  const Mesh mesh = dented_cube();
-  const Bvh bvh(mesh);
-  const std::vector<Ray> rays = aimed_rays(mesh, 500, 3, 208);
-  std::vector<Hit> hits(rays.size()), in_place(rays.size()), of_arrays(rays.size()), some(rays.size());
-  bvh.closest_crossing(rays, hits);
-  bvh.closest_crossing(RayColumns(rays).view(), of_arrays);
-  EXPECT_TRUE(same_bytes(hits, of_arrays));
-  const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0x6d);
-  bvh.closest_crossing(rays, some, {.active = active.data()});
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    ASSERT_TRUE(same_bytes(some[i], (active[i / 8] >> i % 8 & 1) != 0 ? hits[i] : Hit())) << i;
-  // Hits may be written over what rays skip.
-  bvh.closest(rays, in_place);
-  std::vector<Hit> apart(rays.size());
-  const std::vector<Hit> skipped = in_place;
-  bvh.closest_crossing(rays, apart, {.skip = skipped});
-  bvh.closest_crossing(rays, in_place, {.skip = in_place});
-  EXPECT_TRUE(same_bytes(apart, in_place));
-}
-
-TEST(Passages, are_refused_for_other_tests_and_sizes) {
-  const Bvh bvh(cube(-1, 1));
-  const std::vector<Ray> rays(3, make_ray({0, 0, 5}, {0, 0, -1}));
-  std::vector<Hit> hits(3);
-  const std::vector<std::uint32_t> two(2);
-  EXPECT_THROW(bvh.closest_crossing(rays, hits, {.test = TriangleTest::watertight}), std::invalid_argument);
-  EXPECT_THROW(bvh.closest_crossing(rays[0], {.test = TriangleTest::watertight}), std::invalid_argument);
-  EXPECT_THROW(bvh.closest_crossing(rays, std::span(hits).first(2)), std::invalid_argument);
-  EXPECT_THROW(bvh.closest_crossing(rays, hits, {.skip = two}), std::invalid_argument);
-  EXPECT_THROW(bvh.closest_crossing(rays[0], {.threads = -1}), std::invalid_argument);
-  EXPECT_FALSE(Bvh().closest_crossing(rays[0]));
-  Bvh().closest_crossing(rays, hits);
-  EXPECT_FALSE(hits[0]);
 }
 
 }  // namespace

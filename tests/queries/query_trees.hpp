@@ -6,8 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
+#include "../../bench/support/oracles/exact_doubles.hpp"
 #include "../kdtree/kd_trees.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/meshes.hpp"
@@ -30,6 +32,16 @@ void each_tree(const Mesh& mesh, const Check& check) {
     of("BVH", whole), of("BVH of parts", split), of("k-d tree", cells), of("k-d tree by midpoints", midpoint);
   }
 }
+template <class Check>
+void each_tree(const oracle::DoubleMesh& mesh, const Check& check) {
+  const BvhD tree(mesh.vertices, mesh.triangles),
+      by_median(mesh.vertices, mesh.triangles, {.builder = TreeBuilder::median});
+  for (const Path* path : paths_with_own_queries())
+    for (const BvhD* each : {&tree, &by_median}) {
+      SCOPED_TRACE(std::string(path->name) + (each == &tree ? ", doubles" : ", doubles by median"));
+      check(*each, path);
+    }
+}
 
 // check(path, threads) on one thread and on three.
 template <class Check>
@@ -48,62 +60,6 @@ std::vector<Item> repeated(const std::vector<Item>& items, std::size_t count = r
   std::vector<Item> many;
   for (std::size_t i = 0; i < count; ++i) many.push_back(items[i % items.size()]);
   return many;
-}
-
-// The expected lists.
-struct ExpectedLists {
-  std::vector<std::vector<Hit>> hits;
-  std::vector<std::vector<Crossing>> crossings;
-  std::size_t count = 0;  // of crossings
-
-  ExpectedLists(const Mesh& mesh, const std::vector<Ray>& rays) {
-    for (const Ray& ray : rays) {
-      hits.push_back(oracle_hits(mesh, ray)), crossings.push_back(oracle_crossings(mesh, ray));
-      count += crossings.back().size();
-    }
-  }
-};
-
-template <class Tree>
-void expect_lists(const Tree& tree, const Path* path, const std::vector<Ray>& rays,
-                  const ExpectedLists& expected) {
-  const RayLists<Hit> all = tree.all_hits(rays, {.path = path});
-  const RayLists<Crossing> crossed = tree.crossings(rays, {.path = path});
-  std::vector<CrossingCount> counts(rays.size());
-  tree.count_crossings(rays, counts, {.path = path});
-  ASSERT_EQ(all.size(), rays.size());
-  ASSERT_EQ(crossed.size(), rays.size());
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
-    const std::vector<Hit>& hits = expected.hits[i % expected.hits.size()];
-    const std::vector<Crossing>& crossings = expected.crossings[i % expected.hits.size()];
-    const bool good = same_bytes(all[i], hits);
-    EXPECT_TRUE(good) << "ray " << i << ": " << all[i].size() << " hits, not " << hits.size();
-    const bool crosses = std::ranges::equal(crossed[i], crossings);
-    EXPECT_TRUE(crosses) << "ray " << i << ": " << crossed[i].size() << " crossings, not "
-                         << crossings.size();
-    CrossingCount count;
-    for (const Crossing& crossing : crossings) ++count.crossings, count.winding += crossing.side;
-    EXPECT_EQ(counts[i], count) << "ray " << i << ": " << counts[i].crossings << " with sum "
-                                << counts[i].winding;
-    wrong += good && crosses && counts[i] == count ? 0 : 1;
-  }
-}
-
-// Adds a test failure unless rational numbers have the lists and counts of all trees and paths, of rays alone and
-// together. Returns how many crossings there are.
-inline std::size_t expect_lists(const Mesh& mesh, const std::vector<Ray>& rays, bool also_flushed = true) {
-  const ExpectedLists expected(mesh, rays);
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    for (const FloatMode mode : float_modes) {
-      if (mode == FloatMode::flush && !also_flushed) continue;
-      SCOPED_TRACE(name_of(mode));
-      const FloatModeScope scope(mode);
-      expect_lists(tree, path, rays, expected);
-      expect_lists(tree, path, repeated(rays), expected);
-    }
-  });
-  return expected.count;
 }
 
 // Points of a cube, vertices, points of edges and faces, and all of those but for an ULP along an axis.

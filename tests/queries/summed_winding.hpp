@@ -6,10 +6,14 @@
 #include <limits>
 #include <numbers>
 
+#include <raylanes/closed_mesh.hpp>
+
+#include "../../bench/support/oracles/exact_doubles.hpp"
 #include "../../dispatch/bits.hpp"
 #include "query_oracle.hpp"
 
 namespace raylanes::testing {
+using oracle::is_on, oracle::is_on_edge;  // of doubles
 
 inline bool is_on(const Mesh& mesh, const Float3& point) {
   return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
@@ -36,6 +40,18 @@ struct SummedWinding {
       if (oracle::held_by(seen, point) == oracle::Held::inside) continue;
       add(
           seen.corner, point, [] { return false; }, [&] { return oracle::placed(seen, point).side; });
+    }
+  }
+  SummedWinding(const oracle::DoubleMesh& mesh, const Double3& point) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const oracle::DoubleCorners corners = oracle::corners_of(mesh, i);
+      if (has_equal_corners(corners[0], corners[1], corners[2])) continue;
+      add(
+          corners, point,
+          [&] {
+            return is_on({{corners.begin(), corners.end()}, {{0, 1, 2}}}, point);
+          },
+          [&] { return oracle::side_of(corners, point); });
     }
   }
   // Adds a triangle of floats or doubles, whose differences are rounded once. If the point may be in the triangle's
@@ -65,5 +81,19 @@ struct SummedWinding {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   }
 };
+
+// The edges of the boundary, each as often as it has more triangles in one direction than in the other.
+inline double boundary_edges(const auto& mesh) {
+  const ClosedReport report = closed_report(mesh.vertices, mesh.triangles, 0);
+  return static_cast<double>(report.open + 2 * report.inconsistent);
+}
+
+// How far a number of type T of some accuracy may be from the sum. The sum's own error is that of numbers with 64 bits:
+// ours may be 2^11 times that.
+template <class T>
+long double bound_of_winding(const SummedWinding& sum, double accuracy, double edges) {
+  return accuracy + std::numeric_limits<T>::epsilon() / 2 * std::abs(sum.number) + 0x1p-40L * edges +
+         0x1p-100L + 2048 * sum.error;
+}
 
 }  // namespace raylanes::testing

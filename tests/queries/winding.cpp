@@ -1,5 +1,6 @@
 // Winding numbers of floats: where boundaries are long or in many parts, near the rule's half, of threads and masks.
 #include "../../bench/support/oracles/winding_sum.hpp"
+#include "../doubles/both_numbers.hpp"
 #include "chord_meshes.hpp"
 #include "open_meshes.hpp"
 
@@ -105,28 +106,34 @@ TEST(Winding, the_rule_of_inside_near_half) {
   });
 }
 
-TEST(Winding, threads_masks_and_strides) {
+template <class T>
+class WindingCalls : public ::testing::Test {};
+TYPED_TEST_SUITE(WindingCalls, Numbers, NumberNames);
+
+TYPED_TEST(WindingCalls, on_threads_and_of_active_points) {
+  using T = TypeParam;
   const Mesh mesh = without(ellipsoid(1, {0, 0, 0}), 0.1, 103);
-  std::vector<Float3> points = points_around(mesh, 3000, 1.5f, 104);
-  for (const Float3& point : points_in_lines(mesh, 1200, 1.5f, 105)) points.push_back(point);
+  std::vector<Float3> of_floats = points_around(mesh, 3000, 1.5f, 104);
+  for (const Float3& point : points_in_lines(mesh, 1200, 1.5f, 105)) of_floats.push_back(point);
+  const std::vector<PointOf<T>> points = mesh_of<T>({of_floats, {}}).vertices;
   Random random(106);
   std::vector<std::uint8_t> mask(points.size() / 8 + 1);
   for (std::uint8_t& bits : mask) bits = static_cast<std::uint8_t>(random.integer(0, 255));
   for (const Path* path : paths_with_own_queries()) {
-    const Bvh bvh(mesh);
-    std::vector<float> one(points.size()), together(points.size()), some(points.size(), -7.0f);
-    bvh.winding_numbers(points, one, {.path = path});
-    bvh.winding_numbers(points, together, {.path = path, .threads = 3});
+    const auto tree = tree_of<T>(mesh_of<T>(mesh));
+    std::vector<T> one(points.size()), together(points.size()), some(points.size(), -7);
+    tree.winding_numbers(points, one, {.path = path});
+    tree.winding_numbers(points, together, {.path = path, .threads = 3});
     EXPECT_TRUE(same_bytes(one, together));
     // Rows are of active points, so a mask gives the bytes that these have without the others.
-    std::vector<Float3> chosen;
+    std::vector<PointOf<T>> chosen;
     for (std::size_t i = 0; i < points.size(); ++i)
       if ((mask[i / 8] >> i % 8 & 1) != 0) chosen.push_back(points[i]);
-    std::vector<float> expected(chosen.size());
-    bvh.winding_numbers(chosen, expected, {.path = path});
-    bvh.winding_numbers(points, some, {.path = path, .threads = 2, .active = mask.data()});
+    std::vector<T> expected(chosen.size());
+    tree.winding_numbers(chosen, expected, {.path = path});
+    tree.winding_numbers(points, some, {.path = path, .threads = 2, .active = mask.data()});
     for (std::size_t i = 0, k = 0; i < points.size(); ++i)
-      ASSERT_EQ(some[i], (mask[i / 8] >> i % 8 & 1) != 0 ? expected[k++] : -7.0f) << "point " << i;
+      ASSERT_EQ(some[i], (mask[i / 8] >> i % 8 & 1) != 0 ? expected[k++] : -7) << "point " << i;
   }
 }
 

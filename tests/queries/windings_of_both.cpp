@@ -12,7 +12,6 @@
 
 #include "../../dispatch/table/numbers.hpp"
 #include "../doubles/both_numbers.hpp"
-#include "../doubles/double_winding_cases.hpp"
 #include "chord_meshes.hpp"
 #include "open_meshes.hpp"
 

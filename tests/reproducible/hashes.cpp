@@ -83,63 +83,30 @@ constexpr Recorded recorded_tests[] = {
 };
 
 // The rows named "mesh" are of the input. The rows of a scene and a test hold for all modes and both trees that have no
-// row of their own.
+// row of their own. The constants of the docs are of the rows of the built-in scenes, which paths must have in common.
 constexpr Recorded recorded_trees[] = {
     {"mesh ellipsoid", 0x32d9001a5fe20793},
-    {"mesh fractal", 0x9308416651d933b9},
-    {"mesh hall", 0xd6fc9ff2b3fe4273},
     {"mesh soup", 0x273d187a4acc7edf},
-    {"mesh spheres", 0xace9d92a85666afa},
     {"ellipsoid exact", 0xfc4d4ab43c6cfee3},
     {"ellipsoid lists", 0xcb0b13da63fd5079},
     {"ellipsoid moller_trumbore", 0x98c9f4fedc5ecb8d},
     {"ellipsoid points", 0xb72491d99bf4dd5c},
     {"ellipsoid watertight", 0x1053f1b0d21e949a},
     {"ellipsoid windings", 0x736496a82d036084},
-    {"fractal exact", 0x12b0279c7e2199fc},
-    {"fractal lists", 0xf3ea6fe82386686b},
-    {"fractal moller_trumbore", 0x5b15af46de30f0cc},
-    {"fractal points", 0x8f75b3c69d1a4358},
-    {"fractal watertight", 0x9001212dfc6ec714},
-    {"fractal windings", 0x4d81a151b86e6a02},
-    {"hall exact", 0x81505cb84eb7400b},
-    {"hall lists", 0x66bfd56b4e07f7db},
-    {"hall moller_trumbore", 0x994d008e845d2909},
-    {"hall points", 0xf260dee647791035},
-    {"hall watertight", 0x689603e211684867},
-    {"hall windings", 0x62c9367d23cbc23e},
     {"soup exact", 0xa77c1497632ddb1e},
     {"soup lists", 0xa76e57f7e6c0ab5e},
     {"soup moller_trumbore", 0xea5e210e13adb0fc},
     {"soup points", 0x7dac0afde70f2706},
     {"soup watertight", 0x4ff1966a425a735a},
     {"soup windings", 0xd6e17dfe6dd1d4f7},
-    {"spheres exact", 0xdb4d55fbdef22469},
-    {"spheres lists", 0xc6694e8c402d9d59},
-    {"spheres moller_trumbore", 0x514ea14281d5b39d},
-    {"spheres points", 0x69f2e62b8a92627c},
-    {"spheres watertight", 0x368aecd2bf786d64},
-    {"spheres windings", 0xacc10258e3ce2535},
     {"ellipsoid doubles hits", 0xf317406c2b1bf1b3},
     {"ellipsoid doubles lists", 0xa0f91c4b30d87fd3},
     {"ellipsoid doubles points", 0x737e9792cd5a78ee},
     {"ellipsoid doubles windings", 0xd746c7356665a9a2},
-    {"fractal doubles hits", 0xbe70a93275c2a7e6},
-    {"fractal doubles lists", 0x0be8d008d1d7f2d4},
-    {"fractal doubles points", 0xb3bebd06547b11ba},
-    {"fractal doubles windings", 0x908851d4aad814bf},
-    {"hall doubles hits", 0xa2cb57dc46633e3e},
-    {"hall doubles lists", 0x5f2008e39488284f},
-    {"hall doubles points", 0x815c6858ab7e73df},
-    {"hall doubles windings", 0x62ee7db14773608f},
     {"soup doubles hits", 0xddafe9165b18cbdc},
     {"soup doubles lists", 0x86c4b4ef4ffc4953},
     {"soup doubles points", 0x7732b42eb0e4e034},
     {"soup doubles windings", 0xda9144ea17135dbc},
-    {"spheres doubles hits", 0xbad8aa29f864d122},
-    {"spheres doubles lists", 0xe938bf4c92556459},
-    {"spheres doubles points", 0x9e39fbafc7e60420},
-    {"spheres doubles windings", 0x6d747748679dc3fc},
 };
 
 template <std::size_t n>
@@ -203,9 +170,10 @@ TEST(Reproducible, trees_have_the_recorded_bits) {
   for (const TracedMesh& traced : traced_meshes()) {
     const std::string name = "mesh " + traced.name;
     const std::uint64_t hash = hash_of(traced.mesh);
-    // Scenes are made with sines, whose last bit is a matter of the C library.
-    const bool same_input = hash == recorded(recorded_trees, name);
-    if (!same_input)
+    const bool is_recorded = recorded(recorded_trees, name) != 0;
+    // Meshes are made with sines, whose last bit is a matter of the C library.
+    const bool same_input = is_recorded && hash == recorded(recorded_trees, name);
+    if (is_recorded && !same_input)
       std::fprintf(stderr, "SKIPPED recorded bits of the scene %s: it has other vertices here, 0x%016llx\n",
                    traced.name.c_str(), static_cast<unsigned long long>(hash));
     const std::vector<Hashes> of_paths = hashes_of_tree(paths, traced.name, traced.mesh, traced.eye);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../dispatch/table/numbers.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -26,52 +27,69 @@ template <class Tree>
 class TreeErrors : public ::testing::Test {};
 TYPED_TEST_SUITE(TreeErrors, TreeKinds, TreeKindNames);
 
-TYPED_TEST(TreeErrors, meshes_that_are_none) {
-  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<Index3> good{{0, 1, 2}}, bad{{0, 1, 2}, {0, 3, 2}};
-  expect_words(refused([&] { TypeParam(corners, bad); }), {"triangle 1", "3"});
-  for (const float value : {nan, infinity, -infinity}) {
-    std::vector<Float3> spoilt = corners;
+template <class Tree>
+class AnyTreeErrors : public ::testing::Test {
+ protected:
+  using Number = std::conditional_t<has_doubles<Tree>, double, float>;
+  using Points = std::vector<PointOf<Number>>;
+  static constexpr Number none = std::numeric_limits<Number>::quiet_NaN(),
+                          infinite = std::numeric_limits<Number>::infinity();
+  static inline const Points three{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  static inline const std::vector<Index3> one{{0, 1, 2}};
+  static inline const RayOf<Number> down{{Number(0.2), Number(0.2), 1}, 0, {0, 0, -1}, 9};
+};
+TYPED_TEST_SUITE(AnyTreeErrors, SavedKinds, TreeKindNames);
+
+TYPED_TEST(AnyTreeErrors, meshes_that_are_none) {
+  const std::vector<Index3> bad{{0, 1, 2}, {0, 3, 2}};
+  expect_words(refused([&] { TypeParam(this->three, bad); }), {"triangle 1", "3"});
+  for (const auto value : {this->none, this->infinite, -this->infinite}) {
+    auto spoilt = this->three;
     spoilt[2][1] = value;
-    expect_words(refused([&] { TypeParam(spoilt, good); }), {"vertex 2", "y"});
+    expect_words(refused([&] { TypeParam(spoilt, this->one); }), {"vertex 2", "y"});
   }
+  if constexpr (has_doubles<TypeParam>)
+    expect_words(
+        refused([&] { TypeParam(this->three, this->one, {.builder = TreeBuilder::spatial_splits}); }),
+        {"split"});
 }
 
-TYPED_TEST(TreeErrors, no_vertices_that_no_triangle_has) {
-  const std::vector<Float3> corners{{0, 0, 0}, {nan, infinity, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -infinity}};
+TYPED_TEST(AnyTreeErrors, no_vertices_that_no_triangle_has) {
+  const typename TestFixture::Points corners{
+      {0, 0, 0}, {this->none, this->infinite, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -this->infinite}};
   const std::vector<Index3> good{{0, 2, 3}}, bad{{0, 2, 3}, {4, 2, 0}, {1, 2, 3}, {0, 3, 4}}, far{{0, 2, 5}};
   const TypeParam tree(corners, good);
-  EXPECT_EQ(tree.bounds().hi, (Float3{1, 1, 0}));
-  EXPECT_TRUE(tree.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
+  EXPECT_EQ(tree.bounds().hi[1], 1);
+  EXPECT_TRUE(tree.closest(this->down));
   expect_words(refused([&] { TypeParam(corners, bad); }), {"vertex 1", "x", "nan"});
   expect_words(refused([&] { TypeParam(corners, far); }), {"triangle 0", "5"});
 }
 
 // One triangle seen 2^28 + 1 times: refused before anything of that size is read or allocated.
-TYPED_TEST(TreeErrors, more_triangles_than_references_can_name) {
-  const std::vector<Float3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+TYPED_TEST(AnyTreeErrors, more_triangles_than_references_can_name) {
   const std::uint32_t triangle[3] = {0, 1, 2};
   const IndexView many(triangle, (std::size_t{1} << 28) + 1, 0);
-  const std::vector<std::string> words{"268435457", "2^28"};
-  expect_words(refused([&] { TypeParam(corners, many); }), words);
-  TypeParam tree(corners, IndexView(triangle, 1));
-  if constexpr (std::is_same_v<TypeParam, Bvh>) {
-    EXPECT_THROW(tree.refit(corners, many), std::invalid_argument);
+  expect_words(refused([&] { TypeParam(this->three, many); }), {"268435457", "2^28"});
+  TypeParam tree(this->three, IndexView(triangle, 1));
+  if constexpr (!std::is_same_v<TypeParam, KdTree>) {
+    EXPECT_THROW(tree.refit(this->three, many), std::invalid_argument);
   }
-  EXPECT_TRUE(tree.closest(make_ray({0.2f, 0.2f, 1}, {0, 0, -1})));
+  EXPECT_TRUE(tree.closest(this->down));
 }
 
-TYPED_TEST(TreeErrors, batches_and_threads) {
-  const Mesh mesh = triangle_soup(3, 0.4f, 38);
-  const TypeParam tree(mesh);
-  const std::vector<Ray> rays(3, make_ray({0, 0, 3}, {0, 0, -1}));
-  std::vector<Hit> two_hits(2), hits(3);
+TYPED_TEST(AnyTreeErrors, batches_and_threads) {
+  using T = typename TestFixture::Number;
+  const TypeParam tree(this->three, this->one);
+  const std::vector rays(3, this->down);
+  std::vector<HitOf<T>> two_hits(2), hits(3);
   std::vector<std::uint8_t> four_flags(4), flags(3);
-  const TraceOptions negative{.threads = -1};
   expect_words(refused([&] { tree.closest(rays, two_hits); }), {"3", "2"});
   expect_words(refused([&] { tree.occluded(rays, four_flags); }), {"3", "4"});
-  expect_words(refused([&] { tree.closest(rays, hits, negative); }), {"-1", "thread"});
-  expect_words(refused([&] { tree.occluded(rays, flags, negative); }), {"-1", "thread"});
+  expect_words(refused([&] { tree.closest(rays, hits, {.threads = -1}); }), {"-1", "thread"});
+  expect_words(refused([&] { tree.occluded(rays, flags, {.threads = -1}); }), {"-1", "thread"});
+  expect_words(refused([&] { tree.closest(rays[0], {.facing = static_cast<Facing>(3)}); }), {"facing", "3"});
+  expect_words(refused([&] { tree.closest(rays[0], {.after = two_hits}); }), {"after", "2"});
+  expect_words(refused([&] { TypeParam(this->three, this->one, {.threads = -1}); }), {"-1", "thread"});
 }
 
 TYPED_TEST(TreeErrors, enumerators_that_are_none) {
@@ -148,7 +166,6 @@ TYPED_TEST(TreeErrors, options_of_builds_that_are_none) {
     options.builder = static_cast<decltype(options.builder)>(builder);
     expect_words(refused([&] { TypeParam(mesh, options); }), {name, "builder", std::to_string(builder)});
   }
-  expect_words(refused([&] { TypeParam(mesh, {.threads = -1}); }), {"-1", "thread"});
 }
 
 }  // namespace

@@ -113,46 +113,5 @@ INSTANTIATE_TEST_SUITE_P(Meshes, ClosedMeshes,
                                            LeakCase{"slivers_1e7", {0, 0, 0}, {1e-7f, 1, 1e-7f}}),
                          [](const auto& c) { return std::string(c.param.name); });
 
-// By the loop over rays.
-std::size_t count_leaks(const TriangleVariant& variant, const SharedApex& target, RayColumns& rays,
-                        TriangleHitColumns& out) {
-  std::vector<bool> hit(rays.size());
-  for (const Triangle& triangle : target.around) {
-    closest_hits(rays.arrays(), triangle, out.hits(), options_of(variant));
-    for (std::size_t i = 0; i < rays.size(); ++i) hit[i] = hit[i] || out[i].hit != 0;
-  }
-  return static_cast<std::size_t>(std::count(hit.begin(), hit.end(), false));
-}
-
-class OffsetMesh : public ::testing::TestWithParam<Float3> {};
-
-TEST_P(OffsetMesh, does_not_leak_where_triangles_meet) {
-  const Float3 centre = GetParam();
-  const std::vector<SharedApex> targets = shared_points(ellipsoid(quick() ? 1 : 3, centre));
-  const std::vector<TriangleVariant> variants = all_variants<TriangleTest>();
-  std::vector<std::size_t> leaks(variants.size());
-  const int rays_each = by_level(9, 20, 60);  // of 3·1280 targets: up to 230,400 rays
-  Random random(51);
-  TriangleHitColumns out(static_cast<std::size_t>(rays_each));
-  for (const SharedApex& target : targets) {
-    RayColumns rays(rays_to(target, centre, {0.4f, 0.4f, 0.4f}, rays_each, random));
-    for (std::size_t i = 0; i < variants.size(); ++i)
-      if (never_leaks(variants[i].test) ||
-          (variants[i].test == TriangleTest::moller_trumbore && variants[i].path == &paths().front()))
-        leaks[i] += count_leaks(variants[i], target, rays, out);
-  }
-  for (std::size_t i = 0; i < variants.size(); ++i) {
-    if (never_leaks(variants[i].test)) {
-      EXPECT_EQ(leaks[i], 0u) << variants[i].name();
-    } else if (variants[i].test == TriangleTest::moller_trumbore && variants[i].path == &paths().front() &&
-               centre[0] == 0) {
-      EXPECT_GT(leaks[i], 0u) << variants[i].name() << ": rays that a leaky test stops are aimed at no edge";
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Offsets, OffsetMesh,
-                         ::testing::Values(Float3{0, 0, 0}, Float3{148376, 1234, -223423}));
-
 }  // namespace
 }  // namespace raylanes::testing

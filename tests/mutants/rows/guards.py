@@ -1,5 +1,5 @@
 """Masks, rests of arrays, invalid values and overflow in kernels, not looked at."""
-from mutant import rows_of
+from mutant import DOUBLES, rows_of
 
 MUTANTS = [
     *rows_of('kernels/box/box_kernels.cpp', 'test_boxes',
@@ -10,7 +10,7 @@ MUTANTS = [
         ('mask: ignored where nothing is hit', 'store_no_hits(n, active, out)', 'store_no_hits(n, nullptr, out)')),
     *rows_of('kernels/box/directional.hpp', 'test_boxes',
         ('directional box: no zero repair', 'select(tiny, repaired, direction[axis])', 'direction[axis]')),
-    *rows_of('kernels/doubles/double_points.hpp', 'test_doubles',
+    *rows_of('kernels/doubles/double_points.hpp', DOUBLES,
         ('doubles: units of points that overflow', 'return 400 - exponent < 1022 ? 400 - exponent : 1022;',
          'return exponent - exponent;')),
     *rows_of('kernels/doubles/doubles_one_by_one.hpp', 'test_every_row',
@@ -21,7 +21,7 @@ MUTANTS = [
          'std::construct_at(&search.leaves, tree, ray, ray.tmin)'),
         ('doubles: flights of any hit skip nothing', 'ChosenHits(batch.facing, skipped_by(batch, i))',
          'ChosenHits(batch.facing, no_primitive)')),
-    *rows_of('kernels/winding/seen_loop.hpp', 'test_doubles',
+    *rows_of('kernels/winding/seen_loop.hpp', DOUBLES,
         ('loop: sights of doubles overflow', 'if (overflows)',
          'if (false)'), unit='winding', source='kernels/winding/boundary_loop.cpp'),
     *rows_of('kernels/point/box_distance.hpp', 'test_points',

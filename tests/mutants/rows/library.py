@@ -1,5 +1,5 @@
 """Bounds and guards of the library, its C interface, its Python module and the oracles."""
-from mutant import rows_of
+from mutant import DOUBLES, rows_of
 
 MUTANTS = [
     *rows_of('accel/batch/checked_call.cpp', 'test_queries',
@@ -15,7 +15,7 @@ MUTANTS = [
     *rows_of('accel/batch/ray_source.hpp', 'test_bvh',
         ('queries: overlapping hits', 'if (hits.stride < sizeof(Record) && hits.count > 1)',
          'if (false)'), source='accel/queries/nearest.cpp'),
-    *rows_of('accel/batch/ray_source.hpp', 'test_doubles',
+    *rows_of('accel/batch/ray_source.hpp', DOUBLES,
         ('doubles: segments that overflow are none', 'halve(ray);', '{}'), source='accel/doubles/double_batches.cpp'),
     *rows_of('accel/batch/ray_source.hpp', 'test_trees',
         ('shadows: segments begin at the light', 'ray.origin[axis] = from[axis], ray.direction[axis] = difference;',
@@ -43,7 +43,7 @@ MUTANTS = [
         ('c: loaded bytes have no end', 'to < 0 || to > size', 'true')),
     *rows_of('accel/c/tree_calls.hpp', 'test_c_calls',
         ('c: the ends of segments are swapped', 'ends{start, end}', 'ends{end, start}'), source='accel/c/trees.cpp'),
-    *rows_of('accel/trees/bvh_d_build.cpp', 'test_doubles',
+    *rows_of('accel/trees/bvh_d_build.cpp', DOUBLES,
         ('doubles: frames of thin meshes overflow', 'std::min(-1 - exponent_of_largest(half), 900)',
          '-1 - exponent_of_largest(half)')),
     *rows_of('accel/file/bvh_file.cpp', 'test_queries',
@@ -77,7 +77,7 @@ MUTANTS = [
         ('points: pieces begin within bytes of masks', '+ of_mask - points.count / threads % of_mask', '+ 1'),
         ('points: parts beyond their piece', 'count = std::min(piece - within, end - begin);',
          'count = end - begin;'), source='accel/queries/closest_points.cpp'),
-    *rows_of('accel/queries/point_places.cpp', 'test_doubles',
+    *rows_of('accel/queries/point_places.cpp', DOUBLES,
         ('doubles: t of rows without an error', 'of_t = 0x1p-51', 'of_t = 0.0')),
     *rows_of('accel/queries/point_places.cpp', 'test_queries',
         ('lines: points at crossings too', 'of_t = 0x1p-22', 'of_t = 0.0')),
@@ -141,7 +141,7 @@ MUTANTS = [
     *rows_of('bench/support/oracles/winding_sum.cpp', 'test_exact_oracle',
         ('sum: doubles are trusted too soon', 'det_error = 12 * u', 'det_error = 0.01 * u'),
         ('sum: angles have no error', 'z_error = 56 * u', 'z_error = 0.1 * u')),
-    *rows_of('dispatch/table/traversal.hpp', 'test_doubles',
+    *rows_of('dispatch/table/traversal.hpp', DOUBLES,
         ('doubles: later runs write where the first does', 'if (hits != nullptr) some.hits += first;',
          ''), source='accel/doubles/double_batches.cpp'),
     *rows_of('python/native/filters.hpp', 'python_scene_filters',

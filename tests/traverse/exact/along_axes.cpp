@@ -34,22 +34,6 @@ TEST(AlongAxes, hits_of_every_mode_and_tree) {
   }
 }
 
-TEST(AlongAxes, hits_of_one_side) {
-  const Mesh mesh = terrain_over_a_floor();
-  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(120), 63);
-  const Bvh bvh(mesh);
-  for (const Facing facing : {Facing::front, Facing::back}) {
-    std::vector<Hit> hits;
-    for (const Ray& ray : rays) hits.push_back(nearest_of_chosen(mesh, ray, facing, no_primitive));
-    expect_hits(bvh, rays, hits, {.facing = facing});
-  }
-}
-
-TEST(AlongAxes, lists_and_crossings) {
-  const Mesh mesh = terrain_over_a_floor();
-  EXPECT_GT(expect_lists(mesh, rays_along_axes(mesh, by_level(120), 64)), 20u);
-}
-
 // A floor with walls across it. Rays in its plane meet the walls alone, and do not look at the floor row by row.
 TEST(AlongAxes, lists_of_many_rays_in_a_floor) {
   constexpr std::size_t cells = 60, walls = 12;

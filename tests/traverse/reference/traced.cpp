@@ -88,10 +88,13 @@ void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays) {
   const Bvh bvh(mesh.vertices, mesh.triangles);
   const std::vector<Hit> exact = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
-  expect_hits(bvh, rays, exact);
+  const KdTree cells(mesh), midpoint(mesh, {.builder = KdBuilder::midpoint});
+  for (const TriangleTree* tree : std::initializer_list<const TriangleTree*>{&bvh, &cells, &midpoint})
+    expect_hits(*tree, rays, exact);
   if (!quick()) expect_hits(bvh, rays, exact, {.grade = Grade::fast});
-  expect_hits(bvh, rays, brute_force(mesh.vertices, mesh.triangles, rays),
-              {.test = TriangleTest::watertight});
+  const std::vector<Hit> watertight = brute_force(mesh.vertices, mesh.triangles, rays);
+  for (const TriangleTree* tree : std::initializer_list<const TriangleTree*>{&bvh, &cells})
+    expect_hits(*tree, rays, watertight, {.test = TriangleTest::watertight});
   return static_cast<std::size_t>(
       std::count_if(exact.begin(), exact.end(), [](const Hit& hit) { return !!hit; }));
 }
@@ -107,6 +110,7 @@ std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::s
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits) {
   const Bvh bvh(mesh);
   EXPECT_GE(expect_exact_hits(bvh, mesh, rays), min_hits);
+  expect_exact_hits(KdTree(mesh), mesh, rays);
   TraceOptions scalar{.mode = TraversalMode::single, .path = &paths().front()};
   std::vector<std::uint32_t> skip;
   for (const Hit& hit : trace(bvh, rays, scalar))

@@ -27,15 +27,15 @@ std::vector<std::uint8_t> trace_occluded(const TriangleTree& tree, std::span<con
 void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<const Hit> expected,
                  const TraceOptions& base = {});
 
-// The same with the hits of exact arithmetic over the mesh, in both grades (one where quick() holds). The watertight
-// test of the reproducible grade has the hits of brute_force. Returns the number of rays that hit.
+// The same with the hits of exact arithmetic over the mesh, for a BVH in both grades (one where quick() holds) and for
+// k-d trees. The watertight test of the reproducible grade has the hits of brute_force. Returns how many rays hit.
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
 
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
 
-// The same for a BVH, with hits of at least so many rays. And every way to trace has the hits of single rays by scalar
-// code for triangles of one side, and without the triangles that most rays hit first.
+// The same for a BVH and a k-d tree, with hits of at least so many rays. And every way to trace has the hits of single
+// rays by scalar code for triangles of one side, and without the triangles that most rays hit first.
 void expect_exact(const Mesh& mesh, std::span<const Ray> rays, std::size_t min_hits);
 
 }  // namespace raylanes::testing
