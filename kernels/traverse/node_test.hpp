@@ -179,11 +179,13 @@ class BesideRays : NodeTest<L> {
     for (int axis = 0; axis < 3; ++axis) {
       const auto k = static_cast<std::size_t>(axis);
       is_zero_[axis] = in_order(ray.direction[k]) == 0, origin_[axis] = static_cast<float>(ray.origin[k]);
+      is_along_ = is_along_ || is_zero_[axis];
     }
   }
 
   std::uint32_t children_hit(const WideNode& node, float tmax, float (&entry)[tree_width]) const {
     const std::uint32_t hit = NodeTest<L>::children_hit(node, tmax, entry);
+    if (!is_along_) return hit;
     std::uint32_t flat = 0;
     for (std::uint32_t left = hit; left != 0; left &= left - 1) {
       const int child = std::countr_zero(left);
@@ -203,7 +205,7 @@ class BesideRays : NodeTest<L> {
     return holds;
   }
 
-  bool is_zero_[3];
+  bool is_zero_[3], is_along_ = false;
   float origin_[3];
 };
 

@@ -83,12 +83,6 @@ template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_unusual(const TreeView& tree, const Ray& ray, Query& query) {
   NoCounters counters(query);
   if constexpr (is_filtered<Test>) {
-    const bool is_far = tree.max_fused_size < FusedRay::max_size && query.beside <= max_beside;
-    if (FusedRay nodes; is_far && nodes.prepare_up_to<Test>(FusedRay::max_size, tree, ray)) {
-      const FarBoxes boxes(padded_slabs<Test>(ray, tree.bounds), nodes);
-      if (!walk_fused(tree, boxes, FusedLeaves<Test>(tree, ray, nodes), query) || query.beside <= max_beside)
-        return;
-    }
     if (is_valid(ray)) walk_beside<Test>(tree, ray, query, counters);
   } else {
     if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);

@@ -45,10 +45,6 @@ inline V largest_in_all(V x) {
 // AND with this takes the absolute value of three lanes, and makes the fourth zero.
 alignas(16) inline constexpr std::uint32_t sizes_of_three[4] = {0x7fffffffu, 0x7fffffffu, 0x7fffffffu, 0};
 
-inline const float* plane(const WideNode& node, std::ptrdiff_t at) {
-  return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(&node) + at);
-}
-
 // The ray enters a box at the last of three plane · inverse − near, and leaves it at the first of three
 // plane · inverse − far.
 struct FusedRay {
@@ -56,8 +52,7 @@ struct FusedRay {
   // components of the direction.
   static constexpr float pad = 0x1p-21f, min_pad = 0x1p-90f, min_component = 0x1p-60f;
   // Below this size min_pad would widen boxes by more than pad does: by all of the tree in the end.
-  static constexpr float min_size = 0x1p-69f, max_size = 0x1p60f, min_direction = 0x1p-30f,
-                         max_direction = 0x1p30f;
+  static constexpr float min_size = 0x1p-69f, min_direction = 0x1p-30f, max_direction = 0x1p30f;
 
   NodeFloats minus_near[3], minus_far[3], tmin;
   alignas(16) float inverse[4];
@@ -69,10 +64,6 @@ struct FusedRay {
   // tree asks for besides.
   template <class Test>
   bool prepare(const TreeView& tree, const Ray& ray, float more = 0.0f) {
-    return prepare_up_to<Test>(tree.max_fused_size, tree, ray, more);
-  }
-  template <class Test>
-  bool prepare_up_to(float greatest_size, const TreeView& tree, const Ray& ray, float more = 0.0f) {
     // tmin is behind the origin, tmax behind the direction, hi behind lo.
     const auto* const numbers = reinterpret_cast<const float*>(&ray);
     const auto* const bounds = reinterpret_cast<const float*>(&tree.bounds);
@@ -84,7 +75,7 @@ struct FusedRay {
     Floats<4> largest_size = largest_of_three(size);
     // The fourth lanes compare tmin <= tmax, 0 <= tmin, and the largest component with its least size.
     auto is_usual =
-        (blend<8>(size, o) <= blend<8>(Floats<4>(greatest_size), d)) &
+        (blend<8>(size, o) <= blend<8>(Floats<4>(tree.max_fused_size), d)) &
         (components <= blend<8>(Floats<4>(max_direction), o)) &
         (blend<8>(largest_size, greatest) >= four_floats(min_size, min_size, min_size, min_direction));
     if (!all(is_usual)) [[unlikely]]
@@ -124,42 +115,12 @@ struct FusedRay {
   }
 
  private:
+  static const float* plane(const WideNode& node, std::ptrdiff_t at) {
+    return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(&node) + at);
+  }
   static void put(NodeFloats (&to)[3], Floats<4> xyz) {
     to[0] = eight_of_lane<0>(xyz), to[1] = eight_of_lane<1>(xyz), to[2] = eight_of_lane<2>(xyz);
   }
-};
-
-// The same for a tree far from zero, beside its size: planes less the origin, which loses little there, as PaddedSlabs
-// pads them. For rays that FusedRay takes but for that.
-class FarBoxes {
- public:
-  FarBoxes(const PaddedSlabs& padded, const FusedRay& ray) : tmin_(ray.tmin), planes_(ray.planes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      slab_.near_origin[axis] = NodeFloats(padded.near_origin[axis]);
-      slab_.far_origin[axis] = NodeFloats(padded.far_origin[axis]);
-      slab_.near_inverse[axis] = NodeFloats(padded.near_inverse[axis]);
-      slab_.far_inverse[axis] = NodeFloats(padded.far_inverse[axis]);
-    }
-  }
-
-  // The second operand is what a NaN leaves as it is. Empty slots are missed along the major axis, whose numbers are
-  // finite.
-  NodeFloats entries(const WideNode& node) const {
-    NodeFloats at = tmin_;
-    for (int axis = 0; axis < 3; ++axis)
-      at = max(slab_.near(axis, NodeFloats::load(plane(node, planes_[axis]))), at);
-    return at;
-  }
-  NodeFloats exits(const WideNode& node, NodeFloats tmax) const {
-    for (int axis = 0; axis < 3; ++axis)
-      tmax = min(slab_.far(axis, NodeFloats::load(plane(node, planes_[3 + axis]))), tmax);
-    return tmax;
-  }
-
- private:
-  SlabRay<NodeFloats> slab_;
-  NodeFloats tmin_;
-  const std::ptrdiff_t* planes_;
 };
 
 }  // namespace
