@@ -1,11 +1,14 @@
 // Holds the yes/no loops, one ray over N primitives, to their instructions a vector, on every supported path with
 // fused multiply-add (without it each multiply-add is two instructions). On every path registers of which some lanes
-// take no part may have no more instructions than whole ones. For the release build.
+// take no part may have no more instructions than whole ones, and prepared calls with one ray have fewer than others.
+// For the release build.
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
 #include <limits>
 #include <string_view>
+
+#include <raylanes/bvh.hpp>
 
 #include "../../bench/rows/kernels/kernel_rows.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
@@ -143,6 +146,36 @@ bool check_some_lanes(const Path& path) {
   return kept;
 }
 
+// Calls with one ray that are prepared ask for no traps, path and kernel: that takes more than 20 instructions.
+bool check_prepared_calls(const Path& path) {
+  constexpr double least_saved = 20;
+  const Float3 corners[] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const Index3 triangle[] = {{0, 1, 2}};
+  const Bvh bvh(corners, triangle);
+  force_path(path.name);
+  const auto calls = bvh.calls();
+  const Ray ray{.origin = {0, 0, -2}, .direction = {0.125f, 0.0625f, 1}};
+  std::size_t hits = 0;
+  const auto count = [&](const auto& call) {
+    const auto repeat = [&](std::size_t times) {
+      for (; times > 0; --times) hits += call() ? 1u : 0u;
+    };
+    return instructions_per_primitive(repeat, 1).value_or(0);
+  };
+  bool kept = true;
+  const auto compare = [&](const char* call, double plain, double prepared) {
+    const bool good = prepared > 0 && prepared + least_saved <= plain;
+    std::printf("%s %s of one ray: %g instructions, prepared %g: %s\n", path.name, call, plain, prepared,
+                good ? "good" : "OVER");
+    kept = kept && good;
+  };
+  compare("closest", count([&] { return static_cast<bool>(bvh.closest(ray)); }),
+          count([&] { return static_cast<bool>(calls.closest(ray)); }));
+  compare("occluded", count([&] { return bvh.occluded(ray); }), count([&] { return calls.occluded(ray); }));
+  unforce_path();
+  return kept && hits > 0;
+}
+
 }  // namespace
 }  // namespace raylanes::bench
 
@@ -156,6 +189,7 @@ int main() {
   bool kept = true;
   for (const Path& path : paths())
     if (supported(path))
-      kept = bench::check_some_lanes(path) && (!path.has_fma() || bench::check(path)) && kept;
+      kept = bench::check_some_lanes(path) && bench::check_prepared_calls(path) &&
+             (!path.has_fma() || bench::check(path)) && kept;
   return !kept;
 }
