@@ -10,6 +10,7 @@
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/checked_call.hpp"
 #include "../queries/traced_tree.hpp"
+#include "reach.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -57,7 +58,10 @@ void trace_segments(const SceneParts& scene, const Segments& segments, std::span
 
 // The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
 const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
-  if (!scene.is_current || !scene.tops.empty() || QuietFloats::are_wanted()) return nullptr;
+  if (!scene.is_current || QuietFloats::are_wanted()) return nullptr;
+  if (scene.only != nullptr) [[likely]]
+    return (scene.only->mask & mask) != 0 ? scene.only : nullptr;
+  if (!scene.tops.empty()) return nullptr;
   const CommonTree* only = nullptr;
   for (const auto& tree : scene.commons) {
     if (!scene.sees(*tree, mask)) continue;
@@ -69,6 +73,11 @@ const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
 // Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
 bool is_walked(const SceneParts& scene) {
   return scene.is_current && !scene.has_only_others() && !QuietFloats::are_wanted();
+}
+bool comes_to_others(const SceneParts& scene, const Ray& ray, float end) {
+  return scene.has_others() && std::ranges::any_of(scene.tops, [&](const TopLevel& top) {
+           return top.walked.entries == nullptr && may_reach(top.tree.view(), ray, end);
+         });
 }
 SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
   const TraversalKernels& kernels = kernels_of(path).traversal;
@@ -82,7 +91,8 @@ SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ra
   }
   for (const TopLevel& top : scene.tops)
     if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
-  if (scene.has_others()) trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, &hit, nullptr});
+  if (comes_to_others(scene, ray, tmax_behind(hit.t)))
+    trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, &hit, nullptr});
   return hit;
 }
 bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
@@ -93,7 +103,7 @@ bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& r
     if (top.walked.entries != nullptr && kernels_of(path).traversal.any_of_instances(top.walked, ray, mask))
       return true;
   std::uint8_t is_occluded = 0;
-  if (scene.has_others())
+  if (comes_to_others(scene, ray, std::numeric_limits<float>::infinity()))
     trace_others(checked_query(scene, {.path = &path}, mask), {&ray, 1, nullptr, &is_occluded});
   return is_occluded != 0;
 }

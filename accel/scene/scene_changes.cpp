@@ -106,7 +106,7 @@ void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
   const auto has_it = [&](const auto& tree) { return tree->has(instance); };
   const auto tree = std::ranges::find_if(parts.commons, has_it);
   if (parts.is_current && parts.traces_common && tree != parts.commons.end())
-    let_out(parts, *tree, instance, mask);
+    let_out(parts, *tree, instance, mask), parts.set_only();
   masked.mask = mask, masked.standing = left(masked.standing);
 }
 std::uint32_t Scene::geometry_of(std::uint32_t instance) const {
@@ -137,6 +137,7 @@ void Scene::update(int threads) {
   common.commit(parts);
   parts.traces_common = !parts.commons.empty();
   parts.let_out = 0;
+  parts.set_only();
   parts.is_current = true;
 }
 

@@ -58,6 +58,7 @@ struct SceneParts {
   std::vector<std::shared_ptr<CommonTree>> commons;  // of the last update
   bool traces_common = false;                        // whether they are in use, and there are any
   std::uint32_t let_out = 0;                         // how many members have left them since
+  const CommonTree* only = nullptr;                  // the common tree if nothing else is traced
   // Triangles come first, then small shares. Each instance that can be hit, and is not in a common tree in use, is
   // in one of them.
   std::vector<TopLevel> tops;
@@ -72,6 +73,10 @@ struct SceneParts {
   bool has_others() const { return !tops.empty() && tops.back().walked.entries == nullptr; }
   bool has_only_others() const { return !traces_common && has_others() && tops[0].walked.entries == nullptr; }
 
+  // Sets `only`, after changes of the rest.
+  void set_only() noexcept {
+    only = traces_common && commons.size() == 1 && tops.empty() ? commons[0].get() : nullptr;
+  }
   // Sets the trees of instances whose geometry has one.
   void set_trees() noexcept;
   // Sets tops and their views of this scene.

@@ -7,6 +7,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/scratch.hpp"
+#include "reach.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -69,6 +70,10 @@ class SceneTracer {
     for (const TopLevel& top : query_.scene.tops) visit_instances(top, has_answers), has_answers = true;
   }
   void visit_instances(const TopLevel& top, bool has_answers) {
+    top_ = &top;
+    walks_ = top.walked.entries != nullptr && has_only_a_mask();
+    if (has_answers && refers_to_leaf(top.tree.root) && query_.choice.counters == nullptr)
+      return visit_few(padded(top));
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
     Scratch scratch(Scratch::bytes_of<std::byte>(bytes) + Scratch::bytes_of<float>(batch_.size));
     VisitBatch boxes;
@@ -77,9 +82,29 @@ class SceneTracer {
     if (has_answers) boxes.tmax = rest_of_rays(scratch.take<float>(batch_.size));
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.choice.counters;
-    top_ = &top;
-    walks_ = top.walked.entries != nullptr && has_only_a_mask();
     query_.queries().visit(padded(top), boxes);
+  }
+  // The only leaf of a top level: most rays of a large scene come to none of a few instances.
+  void visit_few(const TreeView& tree) {
+    Scratch scratch(Scratch::bytes_of<std::uint32_t>(batch_.size) + Scratch::bytes_of<float>(batch_.size));
+    auto* const rays = scratch.take<std::uint32_t>(batch_.size);
+    float* const rest = rest_of_rays(scratch.take<float>(batch_.size));
+    const std::size_t count =
+        pick(rays, rest, [&](const Ray& ray, float end) { return may_reach(tree, ray, end); });
+    const LeafReference range = leaf_of(tree.root);
+    if (count > 0) leaf(this, {range.block, range.size, rays, rest, count});
+  }
+  // Moves the numbers and ends of rays that may find something to the front; returns how many these are.
+  template <class May>
+  std::size_t pick(std::uint32_t* rays, float* rest, const May& may) const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < batch_.size; ++i) {
+      const Ray& ray = batch_.rays[i];
+      if (!(rest[i] >= ray.tmin) || std::isnan(ray.tmax) || !may(ray, rest[i])) continue;
+      rays[count] = static_cast<std::uint32_t>(i);
+      rest[count++] = std::min(rest[i], std::numeric_limits<float>::max());
+    }
+    return count;
   }
   TreeView padded(const TopLevel& top) const {
     TreeView view = top.tree.view();
@@ -205,10 +230,7 @@ class SceneTracer {
     Scratch scratch(Scratch::bytes_of<std::uint32_t>(batch_.size) + Scratch::bytes_of<float>(batch_.size));
     auto* const rays = scratch.take<std::uint32_t>(batch_.size);
     float* const rest = rest_of_rays(scratch.take<float>(batch_.size));
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < batch_.size; ++i)
-      if (rest[i] >= batch_.rays[i].tmin && !std::isnan(batch_.rays[i].tmax))
-        rays[count] = static_cast<std::uint32_t>(i), rest[count++] = rest[i];
+    const std::size_t count = pick(rays, rest, [](const Ray&, float) { return true; });
     if (count > 0) trace_some(*tree.geometry, tree.numbers(), nullptr, {0, 0, rays, rest, count}, true);
   }
   // The rays of a leaf through a tree, in its space; no inverse: that of the scene.

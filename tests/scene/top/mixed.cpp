@@ -1,6 +1,7 @@
 // Spheres and primitives of the caller's beside triangles: they stand in top levels of their own, and hits are as if
 // each instance were asked by itself.
 #include "../../../accel/queries/traced_tree.hpp"
+#include "../../../accel/scene/reach.hpp"
 #include "../../../accel/scene/scene_parts.hpp"
 #include "../../queries/query_trees.hpp"
 #include "../boxed_cases.hpp"
@@ -107,6 +108,32 @@ TEST(Mixed, has_top_levels_of_triangles_and_of_others) {
   EXPECT_GE(tops[0].entries.size(), 15u);
   EXPECT_EQ(tops[1].tree.order.size(), 5u);
   EXPECT_TRUE(tops[1].entries.empty());
+}
+
+// A ray to any point of a box comes to it, at any size, also by the rounded t of that point; few others do.
+TEST(Reach, loses_no_point_of_a_box) {
+  Random random(612);
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < by_level(20000); ++i) {
+    const float size = std::ldexp(1.0f, static_cast<int>(i % 60) - 30);
+    TreeView tree = no_tree;
+    const Float3 a = random.point(size), b = random.point(size), from = random.point(4 * size);
+    Float3 to, direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      tree.bounds.lo[k] = std::min(a[k], b[k]), tree.bounds.hi[k] = std::max(a[k], b[k]);
+      to[k] = i % 3 == 0             ? a[k]
+              : i % 3 == 1 && k == 0 ? b[k]
+                                     : random.number(std::min(a[k], b[k]), std::max(a[k], b[k]));
+      direction[k] = to[k] - from[k];
+    }
+    const Ray ray = make_ray(from, direction, i % 2 == 0 ? 1.0f : 0.0f, i % 5 == 0 ? 1.0f : infinity);
+    EXPECT_TRUE(may_reach(tree, ray, 1.0f)) << i;
+    EXPECT_TRUE(may_reach(tree, ray, infinity)) << i;
+    others += may_reach(tree, make_ray(from, random.point(1)), infinity) ? 1 : 0;
+    EXPECT_FALSE(may_reach(tree, make_ray({9 * size, 0, 0}, {1, 0, 0}), infinity)) << i;
+    EXPECT_FALSE(may_reach(tree, make_ray({9 * size, 0, 0}, {-1, 0, 0}, 0, 7 * size), infinity)) << i;
+  }
+  EXPECT_LT(others, by_level(20000) / 4);
 }
 
 // Rays come to others only up to the hits of triangles.
