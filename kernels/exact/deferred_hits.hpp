@@ -13,6 +13,9 @@
 #include "../ray/nearest.hpp"
 #include "../ray/ranges.hpp"
 #include "exact_numbers.hpp"
+#if defined(__AVX2__) && defined(__FMA__)
+#include "hit_numbers.hpp"
+#endif
 #include "sides.hpp"
 
 namespace raylanes {
@@ -88,6 +91,28 @@ inline bool is_met_behind(const Triangles& triangles, const Ray& ray, std::uint3
                                                        triangles.primitive(nearest.leaf_triangle));
 }
 
+// Whether doubles say what a triangle that floats leave undecided is: it is no hit before the best one, or it is one.
+template <class Triangles, class AnyRay, class T, class Rule>
+inline bool is_compared_in_doubles([[maybe_unused]] const Triangles& triangles,
+                                   [[maybe_unused]] const AnyRay& ray,
+                                   [[maybe_unused]] std::uint32_t leaf_triangle,
+                                   [[maybe_unused]] CandidateOf<T>& nearest, const Rule&) {
+#if defined(__AVX2__) && defined(__FMA__)
+  if constexpr (std::is_same_v<AnyRay, Ray>) {
+    const RaySizes sizes(triangles, ray, leaf_triangle);
+    if (!sizes.are_safe()) return false;
+    const HitNumbers numbers(triangles, ray, sizes, leaf_triangle);
+    if (numbers.are_outside(ray.tmin, nearest.tmax)) return true;
+    const float t = numbers.clear_t();
+    if (std::is_same_v<Rule, BothSides> && t > ray.tmin && t < nearest.t_lo && numbers.are_inside()) {
+      nearest.keep(t, t, leaf_triangle);
+      return true;
+    }
+  }
+#endif
+  return false;
+}
+
 // Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
 // count.
 
@@ -100,6 +125,7 @@ template <class Triangles, class AnyRay, class T, class Rule = BothSides>
   if (nearest.leaf_triangle != no_leaf_triangle &&
       triangles.primitive(leaf_triangle) == triangles.primitive(nearest.leaf_triangle))
     return;
+  if (is_compared_in_doubles(triangles, ray, leaf_triangle, nearest, rule)) return;
   const AlongAxes along = along_axes(triangles, ray, leaf_triangle);
   if (along.misses) {
     ++nearest.beside;

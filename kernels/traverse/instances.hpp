@@ -164,7 +164,7 @@ class InstanceLeaves {
       walk_rest<InstanceTest>(tree, ray, nearest, has_ended);
       if (nearest.leaf_triangle == no_leaf_triangle) return false;
       const TreeTriangles triangles(tree);
-      const HitNumbers numbers(tree, ray, nodes, nearest.leaf_triangle);
+      const HitNumbers numbers(triangles, ray, nodes, nearest.leaf_triangle);
       if (!numbers.are_clear()) [[unlikely]]
         return take(exact_hit(triangles, ray, nearest.leaf_triangle), entry, at, query);
       return take(numbers.hit(triangles.primitive(nearest.leaf_triangle)), entry, at, query);

@@ -51,7 +51,7 @@ template <class Test, class As, class Sides = BothSides>
     const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
     walk_rest<Test>(tree, ray, query, has_ended);
     if (query.leaf_triangle == no_leaf_triangle) return as(Hit());
-    const HitNumbers numbers(tree, ray, nodes, query.leaf_triangle);
+    const HitNumbers numbers(TreeTriangles(tree), ray, nodes, query.leaf_triangle);
     if (!numbers.are_clear()) [[unlikely]]
       return as(exact_hit(TreeTriangles(tree), ray, query.leaf_triangle));
     return as(numbers.hit(TreeTriangles(tree).primitive(query.leaf_triangle)));
