@@ -70,11 +70,15 @@ Contender timed_contender(const char* mode, std::function<double(const RaySet&, 
 
 }  // namespace
 
-SceneContenders::SceneContenders(const Parts& parts) : first_(parts.first) {
-  for (const Mesh& part : parts.meshes) {
-    const auto tree = std::make_shared<const Bvh>(part);
-    scene_.place(scene_.add(tree)), other_.place(other_.add(tree));
+SceneContenders::SceneContenders(const Parts& parts)
+    : first_(parts.first), is_exact_(!parts.has_transforms()) {
+  for (const Mesh& mesh : parts.shared_meshes()) {
+    const auto tree = std::make_shared<const Bvh>(mesh);
+    scene_.add(tree), other_.add(tree);
   }
+  for (std::uint32_t i = 0; i < first_.size(); ++i)
+    for (raylanes::Scene* const scene : {&scene_, &other_})
+      scene->place(parts.place(i).mesh, parts.place(i).transform);
   if (first_.size() == 1) other_.move(0, quarter_turn);
   for (std::uint32_t i = 0; i < first_.size(); ++i) other_.set_moving(i);
   scene_.update(), other_.update();
@@ -93,18 +97,22 @@ std::vector<NamedContender> SceneContenders::ways(const Path& path, bool calls) 
     return [tracer](const RaySet& set, Answers& answers) { return (*tracer)(set, answers); };
   };
   const bool is_one = first_.size() == 1;
-  return {{"scene", timed_contender(mode, by(straight)), true},
+  return {{"scene", timed_contender(mode, by(straight)), is_exact_},
           {is_one ? "scene_turned" : "scene_moving",
-           is_one ? timed_contender(mode, around) : timed_contender(mode, by(other)), true}};
+           is_one ? timed_contender(mode, around) : timed_contender(mode, by(other)), is_exact_}};
 }
 
 std::pair<double, double> seconds_of_a_move(const Parts& parts) {
   raylanes::Scene scene;
-  for (const Mesh& part : parts.meshes) scene.place(scene.add(Bvh(part)));
+  for (const Mesh& mesh : parts.shared_meshes()) scene.add(Bvh(mesh));
+  for (std::uint32_t i = 0; i < parts.first.size(); ++i)
+    scene.place(parts.place(i).mesh, parts.place(i).transform);
   scene.update();
-  const auto last = static_cast<std::uint32_t>(parts.meshes.size() - 1);
+  const auto last = static_cast<std::uint32_t>(parts.first.size() - 1);
   const auto move = [&](float by) {
-    scene.move(last, {{{1, 0, 0, by}, {0, 1, 0, 0}, {0, 0, 1, 0}}});
+    Transform moved = parts.place(last).transform;
+    moved.row[0][3] += by;
+    scene.move(last, moved);
     return seconds_of([&] { scene.update(); });
   };
   const double first = move(1);

@@ -48,7 +48,8 @@ constexpr double max_others_per_million = 1e4;
 
 // A scene of parts: each part as one instance where it stands, `scene`, and the same parts as instances that will move,
 // `scene_moving`. If there is one part, the second scene is turned by a quarter, with rays turned by the same, so that
-// they are exactly the same in the tree's space: `scene_turned`.
+// they are exactly the same in the tree's space: `scene_turned`. Parts that are nodes are instances of the meshes that
+// they have in common; their transforms round, so hits may differ.
 class SceneContenders {
  public:
   explicit SceneContenders(const Parts& parts);
@@ -58,6 +59,7 @@ class SceneContenders {
 
  private:
   std::vector<std::uint32_t> first_;  // of each part's triangles
+  bool is_exact_;
   raylanes::Scene scene_, other_;
 };
 

@@ -106,6 +106,30 @@ TEST_F(Gltf, strips_fans_lists_sizes_of_indices_and_nodes) {
     expect_triangles("a.gltf", with(changes), vertices, triangles);
 }
 
+// Nodes share a mesh in its own space; their triangles in the scene are the same ones, moved.
+TEST_F(Gltf, nodes_share_meshes) {
+  const FileMesh mesh =
+      read_mesh(folder_.write("a.gltf", with({{nodes, R"([{"children":[1,2],"mesh":0,"translation":[1,2,3]},)"
+                                                      R"({"mesh":0},{"mesh":0,"scale":[2,4,8]}])"},
+                                              {primitive, plain},
+                                              {positions, three}})));
+  EXPECT_EQ(mesh.groups, (std::vector<std::uint32_t>{0, 1, 2}));
+  ASSERT_EQ(mesh.nodes.meshes.size(), 1u);
+  EXPECT_EQ(mesh.nodes.meshes[0].vertices, (std::vector<Float3>{corners[0], corners[1], corners[2]}));
+  ASSERT_EQ(mesh.nodes.places.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& [number, transform] = mesh.nodes.places[i];
+    EXPECT_EQ(number, 0u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(transform.row[k][k], i < 2 ? 1.0f : static_cast<float>(2 << k));
+      EXPECT_EQ(transform.row[k][3], static_cast<float>(k + 1));
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        EXPECT_EQ(mesh.vertices[3 * i + corner][k],
+                  transform.row[k][k] * corners[corner][k] + transform.row[k][3]);
+    }
+  }
+}
+
 TEST_F(Gltf, buffers_inside_and_in_glb) {
   Changes changes{{primitive, plain}, {positions, three}, {buffer, R"("byteLength":56)"}};
   const std::string whole = glb(with(changes), buffer_bytes());

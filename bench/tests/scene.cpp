@@ -83,6 +83,23 @@ TEST(Parts, are_connected_pieces_in_the_order_of_their_first_triangles) {
   EXPECT_EQ(parts_of_groups(mesh, {1, 1, 4, 5}).first, (std::vector<std::uint32_t>{0, 1, 4}));
 }
 
+TEST(Parts, that_are_nodes_have_meshes_in_common) {
+  const Mesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  Mesh two{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}};
+  const Transform moved{{{1, 0, 0, 5}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  const Parts parts = parts_of_nodes(two, {0, 0, 1}, {{Mesh(), one}, {{0, {}}, {1, {}}, {1, moved}}});
+  EXPECT_EQ(parts.first, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(parts.shared_meshes().size(), 2u);
+  EXPECT_EQ(parts.place(0).mesh, 1u);
+  EXPECT_EQ(parts.place(1).mesh, 1u);
+  EXPECT_EQ(parts.place(1).transform.row[0][3], 5.0f);
+  EXPECT_TRUE(parts.has_transforms());
+  EXPECT_FALSE(parts_of_groups(two, {0, 1}).has_transforms());
+  EXPECT_EQ(parts_of_groups(two, {0, 1}).shared_meshes().size(), 2u);
+  // One part is traced where it stands.
+  EXPECT_FALSE(parts_of_nodes(one, {0}, {{one}, {{0, moved}}}).has_transforms());
+}
+
 TEST(LoadScene, camera_comes_from_the_list_beside_the_file) {
   const TemporaryFolder folder;
   const std::string file = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

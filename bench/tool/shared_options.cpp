@@ -152,6 +152,7 @@ bool SharedOptions::is_against(std::string_view contender) const {
 Scene SharedOptions::load(const std::string& name) const {
   Scene scene = load_scene(name);
   subdivide(scene.mesh, subdivisions);
+  for (Mesh& mesh : scene.nodes.meshes) subdivide(mesh, subdivisions);
   for (std::uint32_t& first : scene.groups) first <<= 2 * subdivisions;
   if (!camera.empty()) scene.camera = parse_camera(camera, scene.camera);
   return scene;

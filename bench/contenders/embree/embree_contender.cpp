@@ -206,12 +206,15 @@ struct EmbreeContender::Scene {
     return made;
   }
 
-  void add_instance(const Mesh& part, EmbreeBuild build) {
+  void add_part(const Mesh& part, EmbreeBuild build) {
     parts.push_back(new_scene(build));
     add(parts.back(), part.vertices, part.triangles, build);
     rtcCommitScene(parts.back());
+  }
+  void add_instance(const PlacedMeshes::Place& place) const {
     const RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, parts.back());
+    rtcSetGeometryInstancedScene(instance, parts[place.mesh]);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, place.transform.row);
     rtcCommitGeometry(instance);
     rtcAttachGeometry(scene, instance);
     rtcReleaseGeometry(instance);
@@ -259,11 +262,12 @@ EmbreeContender::EmbreeContender(const Parts& parts, bool are_instances, std::st
     : scene_(std::make_unique<Scene>(isa, 1)) {
   scene_->numbering = {parts.first, are_instances};
   scene_->build(build, [&] {
-    for (const Mesh& part : parts.meshes)
-      if (are_instances)
-        scene_->add_instance(part, build);
-      else
-        scene_->add(scene_->scene, part.vertices, part.triangles, build);
+    if (!are_instances)
+      for (const Mesh& part : parts.meshes) scene_->add(scene_->scene, part.vertices, part.triangles, build);
+    else
+      for (const Mesh& mesh : parts.shared_meshes()) scene_->add_part(mesh, build);
+    for (std::uint32_t i = 0; are_instances && i < parts.first.size(); ++i)
+      scene_->add_instance(parts.place(i));
   });
 }
 

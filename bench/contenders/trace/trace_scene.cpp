@@ -75,6 +75,8 @@ class Tracer {
 
   Parts cut() {
     Scene& scene = result_.scene;
+    if (options_.by_groups && !scene.nodes.places.empty())
+      return parts_of_nodes(scene.mesh, scene.groups, scene.nodes);
     if (options_.by_groups) return parts_of_groups(scene.mesh, scene.groups);
     return options_.parts == 1 ? parts_of_groups(scene.mesh, {}) : cut_into_parts(scene.mesh, options_.parts);
   }

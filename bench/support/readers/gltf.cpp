@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -173,6 +174,12 @@ std::vector<PlacedMesh> placed_meshes(const tinygltf::Model& model) {
   return meshes;
 }
 
+Transform transform_of(const Matrix& matrix) {
+  Transform transform;
+  for (std::size_t i = 0; i < 12; ++i) transform.row[i / 4][i % 4] = static_cast<float>(matrix[i]);
+  return transform;
+}
+
 // --- Triangles
 
 void append_vertices(Mesh& mesh, const Elements& positions, const Matrix& m) {
@@ -232,16 +239,22 @@ void append_primitive(Mesh& mesh, const tinygltf::Model& model, const tinygltf::
 
 FileMesh read_gltf(const std::filesystem::path& file) {
   const tinygltf::Model model = load_gltf(file);
-  FileMesh mesh;
-  for (const PlacedMesh& placed : placed_meshes(model)) {
-    const std::string name = "meshes[" + std::to_string(placed.mesh) + "]";
-    mesh.groups.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
-    const auto& primitives = at(model.meshes, placed.mesh, "nodes", "mesh").primitives;
-    for (std::size_t i = 0; i < primitives.size(); ++i)
-      append_primitive(mesh, model, primitives[i], placed.to_world,
-                       name + ".primitives[" + std::to_string(i) + "]");
+  FileMesh all;
+  std::map<int, std::uint32_t> numbers;  // of the meshes that nodes have
+  for (const auto& [index, to_world] : placed_meshes(model)) {
+    const auto& primitives = at(model.meshes, index, "nodes", "mesh").primitives;
+    const auto append = [&, index = index](Mesh& mesh, const Matrix& matrix) {
+      const std::string name = "meshes[" + std::to_string(index) + "].primitives[";
+      for (std::size_t i = 0; i < primitives.size(); ++i)
+        append_primitive(mesh, model, primitives[i], matrix, name + std::to_string(i) + "]");
+    };
+    all.groups.push_back(static_cast<std::uint32_t>(all.triangles.size()));
+    append(all, to_world);
+    const auto [number, is_new] = numbers.emplace(index, static_cast<std::uint32_t>(all.nodes.meshes.size()));
+    if (is_new) append(all.nodes.meshes.emplace_back(), identity);
+    all.nodes.places.push_back({number->second, transform_of(to_world)});
   }
-  return mesh;
+  return all;
 }
 
 }  // namespace raylanes::bench

@@ -6,13 +6,25 @@
 #include <vector>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/scene.hpp>
 
 namespace raylanes::bench {
 
+// The meshes of a scene graph, each in its own space, and which of them stands where.
+struct PlacedMeshes {
+  struct Place {
+    std::uint32_t mesh;
+    Transform transform;
+  };
+  std::vector<Mesh> meshes;
+  std::vector<Place> places;
+};
+
 // A mesh, and the first triangle of each group that the file names: of OBJ a group or an object, of glTF a node with a
-// mesh. Other formats have no groups.
+// mesh. Other formats have no groups. Triangle k of a node is triangle k of its mesh; only glTF has nodes.
 struct FileMesh : Mesh {
-  std::vector<std::uint32_t> groups;
+  std::vector<std::uint32_t> groups = {};
+  PlacedMeshes nodes = {};
 };
 
 // The triangles of `file`, chosen by its extension (letter case does not matter): .obj, .ply (ASCII, binary of either

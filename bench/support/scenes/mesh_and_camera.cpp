@@ -105,7 +105,8 @@ Scene load_scene(const std::string& name_or_path) {
   FileMesh mesh = read_mesh(file);
   std::optional<ListedScene> listed = find_in_list(file);
   if (!listed) listed = {file.stem().string(), automatic_camera(mesh)};
-  return {std::move(listed->name), std::move(mesh), listed->camera, std::move(mesh.groups)};
+  return {std::move(listed->name), std::move(mesh), listed->camera, std::move(mesh.groups),
+          std::move(mesh.nodes)};
 }
 
 }  // namespace raylanes::bench

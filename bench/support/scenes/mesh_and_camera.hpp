@@ -9,6 +9,7 @@
 #include <raylanes/mesh.hpp>
 
 #include "../../../accel/mesh/bounding_boxes.hpp"
+#include "../readers/mesh_reader.hpp"
 
 namespace raylanes::bench {
 
@@ -26,6 +27,7 @@ struct Scene {
   Mesh mesh;
   Camera camera;
   std::vector<std::uint32_t> groups = {};  // of the file: the first triangle of each, see FileMesh
+  PlacedMeshes nodes = {};  // which the groups are; none if they have no transforms of their own
 };
 
 // The smallest box around all triangles, empty for an empty mesh, and the length of its diagonal, then 0.

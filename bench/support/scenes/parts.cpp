@@ -1,6 +1,7 @@
 #include "parts.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 namespace raylanes::bench {
@@ -63,6 +64,21 @@ Mesh mesh_of(const Mesh& whole, std::size_t begin, std::size_t end, std::vector<
 }
 
 }  // namespace
+
+bool Parts::has_transforms() const {
+  const Transform identity;
+  return std::ranges::any_of(placed.places, [&](const PlacedMeshes::Place& place) {
+    return std::memcmp(&place.transform, &identity, sizeof identity) != 0;
+  });
+}
+
+Parts parts_of_nodes(const Mesh& mesh, const std::vector<std::uint32_t>& first, PlacedMeshes nodes) {
+  Parts parts = parts_of_groups(mesh, first);
+  std::erase_if(nodes.places,
+                [&](const PlacedMeshes::Place& place) { return nodes.meshes[place.mesh].triangles.empty(); });
+  if (parts.first.size() > 1) parts.placed = std::move(nodes);
+  return parts;
+}
 
 Parts parts_of_groups(const Mesh& mesh, std::vector<std::uint32_t> first) {
   Parts parts;

@@ -87,6 +87,9 @@ RUNS = [
      not any(row.get("wrong_per_million") for row in rows)),
     ("trace groups.obj --parts groups --against scene --size 8x8", None, "2 parts", lambda rows:
      values(rows, "triangles") == {24} and not any(row.get("wrong_per_million") for row in rows)),
+    ("trace nodes.gltf --parts groups --against scene --subdivide 1 --size 32x32", None, "3 parts", lambda rows:
+     values(rows, "triangles") == {48} and len(of(rows, contender="scene", rays="primary")) == 1 and
+     len(values(of(rows, rays="primary"), "hits")) == 1),
     ("trace hall --build spatial_splits --optimize --size 8x8", None, "",
      lambda rows: values(rows, "build") == {"spatial_splits+optimized"}),
     ("points box.obj --points grid --grid 4x3x2 --query inside,signed --image slice.png --against cgal",
@@ -137,6 +140,9 @@ BESIDE_EMBREE = [
      {"raylanes", "scene", "scene_moving", "embree", "embree_instances"} and
      all_of(row["ratio"] > 0 for row in rows if not row["contender"].startswith("embree")) and
      all_of(row["ours_wrong"] == 0 for row in rows if "ours_wrong" in row)),
+    ("trace nodes.gltf --parts groups --size 24x16 --rays primary --mode call --against scene,embree", None, "3 parts",
+     lambda rows: len(of(rows, contender="embree_instances")) > 0 and
+     all_of(row["ours_wrong"] == 0 for row in rows if "ours_wrong" in row) and len(values(rows, "hits")) == 1),
     ("trees hall --stages --rounds 1 --threads 2 --against embree", None, "", lambda rows: len(rows) == 5 and
      all_of({"build_ratio_to_embree", "refit_ratio_to_embree"} <= row.keys() for row in rows[:2])),
     ("trees --frames frame0.obj frame1.obj frame2.obj --size 8x8 --rounds 1 --against embree", None, "",

@@ -1,4 +1,5 @@
 """The tool as a user runs it, in a folder of small meshes."""
+import base64
 import json
 import os
 import pathlib
@@ -13,8 +14,20 @@ TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 
 FACES = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
 BOX = "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8)) + FACES
 BOX_ABOVE = BOX.splitlines(keepends=True)[:8] + [re.sub(r"\d", lambda number: str(int(number[0]) - 9), FACES)]
+TETRAHEDRON_BYTES = struct.pack("<12f12B", *(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1),
+                                *(0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3))
+NODES = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+         "nodes": [{"mesh": 0, "children": [1, 2]}, {"mesh": 0, "translation": [2, 0, 0]},
+                   {"mesh": 0, "scale": [1, 3, 1], "rotation": [0, 0.6, 0, 0.8], "translation": [-2, 0, 0]}],
+         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                       {"bufferView": 1, "componentType": 5121, "count": 12, "type": "SCALAR"}],
+         "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+         "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64," +
+                      base64.b64encode(TETRAHEDRON_BYTES).decode("ascii")}]}
 MESHES = {"flat.obj": TRIANGLE, "box.obj": BOX, "open.obj": BOX.replace("f 5 6 8 7\n", ""),
           "groups.obj": "g below\n" + BOX + "g above\n" + "".join(BOX_ABOVE).replace(" 1\n", " 3\n"),
+          "nodes.gltf": json.dumps(NODES),
           **{f"frame{n}.obj": f"v 0 0 {n}\nv 1 0 0\nv 0 1 0\nv 1 1 {-n}\nf 1 2 3\nf 2 4 3\n" for n in range(3)}}
 
 # What --help says about exit statuses.
