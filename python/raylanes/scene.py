@@ -299,9 +299,8 @@ class Scene(SceneQueries, Stored):
 
         Examples
         --------
-        >>> sorted(scene.report())
-        ['common_bytes', 'common_instances', 'common_trees', 'common_triangles', 'mesh_triangles',
-         'meshes_without_tree']
+        >>> scene.report()['common_trees']
+        1
         """
         return self._tree.report()
 
