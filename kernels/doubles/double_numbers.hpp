@@ -40,7 +40,6 @@ struct NumbersInPairs {
     return is_first(outside | (inside & t.is_bounded &
                                ((t.high < V(finite_tmin(tmin))) | (t.low > V(finite_tmax(tmax))))));
   }
-  bool hits(double tmin, double tmax) const { return is_clear() && has_t(tmin, tmax); }
   bool has_t(double tmin, double tmax) const {
     return is_first(t.is_clear & inside & (t.low > V(finite_tmin(tmin))) & (t.low < V(finite_tmax(tmax))));
   }

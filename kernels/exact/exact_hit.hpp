@@ -27,6 +27,13 @@ template <class Triangles, class AnyRay>
   return hit;
 }
 
+// A hit, or none, of which t is exact, rounded once, and u and v if they are clear.
+template <class AnyHit>
+struct DecidedHit {
+  AnyHit hit;
+  bool is_clear = true;
+};
+
 #if defined(__AVX2__) && defined(__FMA__)
 template <class Triangles, class AnyRay>
 inline HitInPairs<NumberOfRay<AnyRay>> numbers_of(const Triangles& triangles, const AnyRay& ray,
@@ -34,42 +41,42 @@ inline HitInPairs<NumberOfRay<AnyRay>> numbers_of(const Triangles& triangles, co
   return {triangles, ray, leaf_triangle};
 }
 #else
-template <bool compares, class Triangles>
-[[gnu::noinline]] Hit decided_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
-                                  const AlongAxes& along) {
+template <class Triangles>
+[[gnu::noinline]] DecidedHit<Hit> decided_hit(const Triangles& triangles, const Ray& ray,
+                                              std::uint32_t leaf_triangle, const AlongAxes& along) {
   if (along.misses) return {};
   RayTrianglePairs<1> lane;
   set_lane(lane, 0, triangles, ray, leaf_triangle, SharedAxes(ray.direction));
   RoundedHits<1> rounded;
   decide_exactly(lane, 1u, rounded, along.zeros);
   if (rounded.lanes == 0) return {};
-  return {rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)};
+  return {{rounded.t[0], rounded.u[0], rounded.v[0], triangles.primitive(leaf_triangle)}};
 }
 #endif
 
-// A ray and one triangle, with the ray's own ends. compares: where only t and the primitive matter, u and v may be
-// anything, and near edges only integers know them.
-template <bool compares, class Triangles, class AnyRay>
+// A ray and one triangle, with the ray's own ends.
+template <class Triangles, class AnyRay>
 [[gnu::noinline]] auto decided_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,
                                    const AlongAxes& along) {
-  using AnyHit = HitOf<NumberOfRay<AnyRay>>;
-  if (along.misses) return AnyHit();
+  using Decided = DecidedHit<HitOf<NumberOfRay<AnyRay>>>;
+  if (along.misses) return Decided();
   auto numbers = numbers_of(triangles, ray, leaf_triangle);
   if (along.zeros != 0) numbers.set_zeros(along.zeros);
-  if (numbers.misses(ray.tmin, ray.tmax)) return AnyHit();
-  if (compares ? numbers.has_t(ray.tmin, ray.tmax) : numbers.hits(ray.tmin, ray.tmax))
-    return numbers.hit(triangles.primitive(leaf_triangle));
-  return hit_in_integers(triangles, ray, leaf_triangle);
+  if (numbers.misses(ray.tmin, ray.tmax)) return Decided();
+  if (numbers.has_t(ray.tmin, ray.tmax))
+    return Decided{numbers.hit(triangles.primitive(leaf_triangle)), numbers.is_clear()};
+  return Decided{hit_in_integers(triangles, ray, leaf_triangle)};
 }
 template <class Triangles, class AnyRay>
 inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
-  return decided_hit<false>(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+  const auto decided = decided_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+  return decided.is_clear ? decided.hit : hit_in_integers(triangles, ray, leaf_triangle);
 }
-// A hit of which only t and the primitive matter.
+// A hit of which only t and the primitive matter: near edges only integers know u and v.
 template <class Triangles, class AnyRay>
 inline auto hit_to_compare(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,
                            const AlongAxes& along) {
-  return decided_hit<true>(triangles, ray, leaf_triangle, along);
+  return decided_hit(triangles, ray, leaf_triangle, along).hit;
 }
 template <class Triangles, class AnyRay>
 inline auto hit_to_compare(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {

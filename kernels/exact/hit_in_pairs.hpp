@@ -52,7 +52,6 @@ class HitInPairs {
     auto within = (quotient_.high >= V(finite_tmin(tmin))) & (quotient_.low <= V(finite_tmax(tmax)));
     return is_safe_ && (outside_ || (inside_ && is_t(quotient_.is_bounded & ~within)));
   }
-  bool hits(T tmin, T tmax) const { return is_clear() && has_t(tmin, tmax); }
   // Whether it is a hit of which t is clear, if not u and v.
   bool has_t(T tmin, T tmax) const {
     V begin(finite_tmin(tmin)), end(finite_tmax(tmax));
