@@ -49,21 +49,43 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
     for (const std::size_t run :
          {std::size_t{64}, std::size_t{700}, by_level<std::size_t>(2000, 17000, 40000)})
       batches.push_back(aimed_rays_from_points(c.mesh, run < 1000 ? 3 * run + 50 : run + 50, run, run));
-    ++turn;
     for (std::size_t p = 0; p < paths.size(); ++p) {
       if (by_level(true, true, false) && turn % paths.size() != p) continue;
       SCOPED_TRACE(c.name + " on " + paths[p]->name);
-      for (const bool fly : {false, true})
-        for (const std::vector<RayD>& rays : batches) {
-          let_rays_fly(tree, fly);
+      for (const bool fly : {false, true}) {
+        let_rays_fly(tree, fly);
+        for (const std::vector<RayD>& rays : batches)
+          expect_single_calls(tree, rays, {.path = paths[p], .threads = 2});
+        for (const std::vector<RayD>& rays :
+             {aimed_rays(c.mesh, 5000, 78, 0.9), aimed_rays_from_points(c.mesh, 400, 100, 6)}) {
           std::vector<HitD> first(rays.size());
           tree.closest(rays, first, {.path = paths[p]});
-          expect_single_calls(tree, rays, {.path = paths[p], .threads = 2});
-          if (rays.size() > 10000) continue;
           expect_single_calls(tree, rays, {.path = paths[p], .skip = first});
           expect_single_calls(tree, rays, {.path = paths[p], .facing = Facing::back});
         }
+      }
       if (HasFailure()) return;
+    }
+    ++turn;
+  }
+}
+
+// Those are traced as packets.
+TEST(DoubleRays, from_points_have_the_hits_of_rational_arithmetic) {
+  for (const DoubleCase& c : double_cases(0)) {
+    SCOPED_TRACE(c.name);
+    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
+    const std::vector<RayD> rays = aimed_rays_from_points(c.mesh, 200, 100, 5);
+    std::vector<HitD> expected(rays.size()), hits(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (const auto all = exact_double_hits(c.mesh, rays[i]); !all.empty()) expected[i] = all[0];
+    for (const Path* path : paths_with_own_queries()) {
+      tree.closest(rays, hits, {.path = path}), tree.occluded(rays, occluded, {.path = path});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(same_bytes(hits[i], expected[i])) << path->name << ' ' << text_of(rays[i]);
+        ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << path->name << ' ' << text_of(rays[i]);
+      }
     }
   }
 }
