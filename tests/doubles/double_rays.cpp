@@ -70,6 +70,29 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   }
 }
 
+HitD nearest_of(const std::vector<HitD>& hits) {
+  return hits.empty() ? HitD() : hits[0];
+}
+
+// Each size is traced alone and together.
+TEST(DoubleRays, of_all_sizes_have_the_hits_of_rational_arithmetic) {
+  for (const DoubleCase& c : double_cases(by_level<std::size_t>(100, 400, 1600))) {
+    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
+    for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
+      std::vector<HitD> expected, hits(c.rays.size());
+      for (const RayD& ray : c.rays) expected.push_back(nearest_of(exact_double_hits(c.mesh, ray, facing)));
+      for (const Path* path : paths_with_own_queries()) {
+        SCOPED_TRACE(c.name + " on " + path->name);
+        const TraceOptionsD options{.path = path, .facing = facing};
+        expect_single_calls(tree, c.rays, options);
+        tree.closest(c.rays, hits, options);
+        for (std::size_t i = 0; i < hits.size(); ++i)
+          ASSERT_TRUE(same_bytes(hits[i], expected[i])) << text_of(c.rays[i]);
+      }
+    }
+  }
+}
+
 // Those are traced as packets.
 TEST(DoubleRays, from_points_have_the_hits_of_rational_arithmetic) {
   for (const DoubleCase& c : double_cases(0)) {
@@ -79,7 +102,7 @@ TEST(DoubleRays, from_points_have_the_hits_of_rational_arithmetic) {
     std::vector<HitD> expected(rays.size()), hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i)
-      if (const auto all = exact_double_hits(c.mesh, rays[i]); !all.empty()) expected[i] = all[0];
+      expected[i] = nearest_of(exact_double_hits(c.mesh, rays[i]));
     for (const Path* path : paths_with_own_queries()) {
       tree.closest(rays, hits, {.path = path}), tree.occluded(rays, occluded, {.path = path});
       for (std::size_t i = 0; i < rays.size(); ++i) {
