@@ -108,10 +108,10 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   return choice;
 }
 
-// Whether a call with one ray sets no more than facing, skip, test, grade and path.
+// Whether a call with one ray sets no more than facing, skip, after, test, grade and path.
 bool is_usual_but_chosen(const TraceOptions& options) {
   return options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
-         options.threads == 1 && options.counters == nullptr && options.after.first == nullptr &&
+         options.threads == 1 && options.counters == nullptr &&
          static_cast<std::size_t>(options.grade) < grade_names.size();
 }
 // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
@@ -136,28 +136,28 @@ void trace_segments(const TracedTree& tree, const Segments& segments, std::span<
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual = is_usual_but_chosen(options) && options.facing == Facing::any &&
-                        options.skip.first == nullptr && test < std::size(triangle_tests);
+                        options.after.first == nullptr && options.skip.first == nullptr &&
+                        test < std::size(triangle_tests);
   if (!is_usual) return nullptr;
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
+bool is_usual_kept(const TraceOptions& options) {
+  return is_usual_but_chosen(options) && options.test == TriangleTest::exact &&
+         static_cast<std::size_t>(options.facing) < facing_names.size() &&
+         options.skip.count == (options.skip.first != nullptr ? 1 : 0);
+}
 const ChosenCallRow* chosen_row(const TraceOptions& options) {
-  const bool is_usual = is_usual_but_chosen(options) && options.test == TriangleTest::exact &&
-                        static_cast<std::size_t>(options.facing) < facing_names.size() &&
-                        options.skip.count == (options.skip.first != nullptr ? 1 : 0);
-  return is_usual ? &kernels_of(checked_path(options.path)).queries.plain.chosen_call : nullptr;
+  return is_usual_kept(options) && options.after.first == nullptr
+             ? &kernels_of(checked_path(options.path)).queries.plain.chosen_call
+             : nullptr;
 }
 const CallRow& default_row() {
   constexpr TraceOptions options;
   constexpr auto test = static_cast<std::size_t>(options.test),
                  grade = static_cast<std::size_t>(options.grade);
   return kernels_of(path_in_use()).traversal.call.row[test][grade];
-}
-
-void detail::require_ordered_hits(bool are_ordered) {
-  if (!are_ordered)
-    throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
 }
 
 void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,

@@ -1,8 +1,9 @@
-// Hits behind others.
+// Hits behind others, and hits of which a caller keeps some.
 #pragma once
 
 #include <type_traits>
 
+#include "../../dispatch/table/queries.hpp"
 #include "../batch/batch.hpp"
 #include "filtered.hpp"
 
@@ -104,5 +105,37 @@ struct FilteredCall {
                                });
   }
 };
+
+template <class AnyHit>
+AskedOf<std::remove_const_t<decltype(AnyHit::t)>> asked_by(const detail::Rejection<AnyHit>& rejection) {
+  return {rejection.rejects, rejection.function};
+}
+// Checks the options and holds what they say of one ray.
+template <class T>
+struct KeptCall {
+  HitOf<T> last;
+  AskedOf<T> asked;
+
+  template <class Options>
+  KeptCall(const detail::Rejection<HitOf<T>>& rejection, const Options& options)
+      : asked{rejection.rejects, rejection.function, options.facing, skip_of_one("trace", options)} {
+    require_after("trace", options.after, 1);
+    if (options.after.first != nullptr) last = options.after[0], asked.after = &last;
+  }
+  KeptCall(const KeptCall&) = delete;
+  KeptCall& operator=(const KeptCall&) = delete;
+};
+
+// The first hit behind options.after that is not rejected; closest(options) is the first one behind.
+template <class AnyHit, class Options, class Closest>
+AnyHit first_kept(const detail::Rejection<AnyHit>& rejection, Options options, const Closest& closest) {
+  AnyHit hit = closest(options);
+  while (hit && rejection.rejects(rejection.function, hit)) {
+    const AnyHit last = hit;
+    options.after = last;
+    hit = closest(options);
+  }
+  return hit;
+}
 
 }  // namespace raylanes

@@ -47,6 +47,8 @@ const CallRow& default_row();
 const CallRow* usual_row(const TraceOptions& options);
 // The row for a call with one ray that sets facing and skip besides, if at all; null if there is none.
 const ChosenCallRow* chosen_row(const TraceOptions& options);
+// Whether a call with one ray whose caller rejects hits sets no more than facing, skip, after, grade and path.
+bool is_usual_kept(const TraceOptions& options);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);

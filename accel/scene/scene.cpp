@@ -56,20 +56,6 @@ void trace_segments(const SceneParts& scene, const Segments& segments, std::span
   trace_occluded(scene, {.segments = &segments, .active = options.active}, "points", occluded, options, mask);
 }
 
-// The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
-const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
-  if (!scene.is_current || QuietFloats::are_wanted()) return nullptr;
-  if (scene.only != nullptr) [[likely]]
-    return (scene.only->mask & mask) != 0 ? scene.only : nullptr;
-  if (!scene.tops.empty()) return nullptr;
-  const CommonTree* only = nullptr;
-  for (const auto& tree : scene.commons) {
-    if (!scene.sees(*tree, mask)) continue;
-    if (only != nullptr) return nullptr;
-    only = tree.get();
-  }
-  return only;
-}
 // Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
 bool is_walked(const SceneParts& scene) {
   return scene.is_current && !scene.has_only_others() && !QuietFloats::are_wanted();
@@ -123,6 +109,20 @@ struct CallOfOne {
 };
 
 }  // namespace
+
+const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
+  if (!scene.is_current || QuietFloats::are_wanted()) return nullptr;
+  if (scene.only != nullptr) [[likely]]
+    return (scene.only->mask & mask) != 0 ? scene.only : nullptr;
+  if (!scene.tops.empty()) return nullptr;
+  const CommonTree* only = nullptr;
+  for (const auto& tree : scene.commons) {
+    if (!scene.sees(*tree, mask)) continue;
+    if (only != nullptr) return nullptr;
+    only = tree.get();
+  }
+  return only;
+}
 
 void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
                 const TraceOptions& options, std::uint32_t mask) {

@@ -27,6 +27,43 @@ auto filtered(const SceneParts& scene, const SceneHitFilter& filter, const Trace
                                                                                       options, trace};
 }
 
+// One ray whose caller rejects hits, if a common tree has all that the mask sees: its kernel asks about hits of the
+// tree. tree is null if the call takes another way.
+struct KeptInCommon {
+  const CommonTree* tree = nullptr;
+  AskedOf<float> asked;
+
+  KeptInCommon(const SceneParts& scene, const detail::Rejection<SceneHit>& rejection,
+               const TraceOptions& options, std::uint32_t mask)
+      : rejection_(rejection), path_(checked_path(options.path)) {
+    const bool names_instance = options.skip.first == nullptr || options.skip.to_instance != 0;
+    const bool is_usual = names_instance && is_usual_kept(options);
+    const CommonTree* const seen = is_usual ? quick_tree(scene, mask) : nullptr;
+    if (seen == nullptr) return;
+    require_after_in_scene(options, 1);
+    const MemberNumbers numbers = seen->numbers();
+    asked = {&rejects, this, options.facing};
+    if (options.skip.first != nullptr) asked.skipped = numbers.of(options.skip.instance(0), options.skip[0]);
+    if (options.after.first != nullptr)
+      last_ = numbers.after(last_hit(options.after, 0)), asked.after = &last_;
+    tree = seen;
+  }
+  KeptInCommon(const KeptInCommon&) = delete;
+  KeptInCommon& operator=(const KeptInCommon&) = delete;
+  TriangleOwners owners() const { return tree->numbers().owners; }
+  const KeptRow<TreeView, float>& row() const { return kernels_of(path_).queries.plain.kept; }
+
+ private:
+  static bool rejects(void* call, const Hit& hit) {
+    const auto& self = *static_cast<const KeptInCommon*>(call);
+    return self.rejection_.rejects(self.rejection_.function, self.owners().spread(hit));
+  }
+
+  const detail::Rejection<SceneHit>& rejection_;
+  const Path& path_;
+  Hit last_;
+};
+
 // Says of a hit that may touch an edge whether the ray passes through its instance there.
 bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
                 const std::optional<SkippedPrimitive>& skip, const TraceOptions& options) {
@@ -116,6 +153,23 @@ void Scene::closest_crossing(RayView rays, SceneHitView hits, const TraceOptions
   keep_passages(*this, parts(), call.rays, hits, call.options, mask);
 }
 
+SceneHit Scene::closest_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
+                             const TraceOptions& options, std::uint32_t mask) const {
+  require_exact_in_scene(options);
+  if (const KeptInCommon call(parts(), rejection, options, mask); call.tree != nullptr)
+    return call.owners().spread(call.row().closest(*call.tree->view, ray, call.asked));
+  return first_kept(rejection, options, [&](const TraceOptions& next) { return closest(ray, next, mask); });
+}
+bool Scene::any_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
+                     const TraceOptions& options, std::uint32_t mask) const {
+  require_exact_in_scene(options);
+  TraceOptions from_the_first = options;
+  from_the_first.after = {};  // of closest() only
+  if (const KeptInCommon call(parts(), rejection, from_the_first, mask); call.tree != nullptr)
+    return call.row().any(*call.tree->view, ray, call.asked);
+  return static_cast<bool>(first_kept(rejection, from_the_first,
+                                      [&](const TraceOptions& next) { return closest(ray, next, mask); }));
+}
 void Scene::filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
                              const TraceOptions& options, std::uint32_t mask) const {
   filtered(parts(), filter, options, mask).closest(rays, hits);

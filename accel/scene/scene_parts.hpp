@@ -98,6 +98,9 @@ struct SceneParts {
   }
 };
 
+// The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.
+const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask);
+
 // Answers to rays of a scene: hits or occluded, the other is null. On this thread; all are set.
 struct SceneBatch {
   const Ray* rays;

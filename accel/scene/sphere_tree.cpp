@@ -232,6 +232,16 @@ void SphereTree::occluded_towards(const Float3& direction, VertexView points,
   trace_segments(tree_.get(), {direction, points, {}, true}, occluded, options);
 }
 
+Hit SphereTree::closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                             const VisitOptions& options) const {
+  return first_kept(rejection, options, [&](const VisitOptions& next) { return closest(ray, next); });
+}
+bool SphereTree::any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                          const VisitOptions& options) const {
+  VisitOptions from_the_first = options;
+  from_the_first.after = {};  // of closest() only
+  return static_cast<bool>(closest_kept(ray, rejection, from_the_first));
+}
 void SphereTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                                   const VisitOptions& options) const {
   filtered(tree_.get(), filter, options).closest(rays, hits);

@@ -179,6 +179,29 @@ void BvhD::closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOp
                            {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
 }
 
+// options: null for the default ones.
+HitD BvhD::closest_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
+                        const TraceOptionsD* options) const {
+  if (options == nullptr && tree_ != nullptr && !QuietFloats::are_wanted())
+    return kernels_of(path_in_use()).doubles.kept.closest(tree_->ready, ray, asked_by(rejection));
+  const TraceOptionsD by = options != nullptr ? *options : TraceOptionsD();
+  const DoubleRayKernels& kernels = checked_kernels(by);
+  const KeptCall<double> call(rejection, by);
+  const QuietFloats quiet;
+  return kernels.kept.closest(view_of(tree_), ray, call.asked);
+}
+bool BvhD::any_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
+                    const TraceOptionsD* options) const {
+  if (options == nullptr && tree_ != nullptr && !QuietFloats::are_wanted())
+    return kernels_of(path_in_use()).doubles.kept.any(tree_->ready, ray, asked_by(rejection));
+  TraceOptionsD by = options != nullptr ? *options : TraceOptionsD();
+  by.after = {};  // of closest() only
+  const DoubleRayKernels& kernels = checked_kernels(by);
+  const KeptCall<double> call(rejection, by);
+  const QuietFloats quiet;
+  return kernels.kept.any(view_of(tree_), ray, call.asked);
+}
+
 void BvhD::filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                             const TraceOptionsD& options) const {
   filtered(view_of(tree_), filter, options).closest(rays, hits);

@@ -49,6 +49,29 @@ class EmbreeDoubles {
   std::unique_ptr<Scene> scene_;
 };
 
+// Whether a filter rejects a triangle: of any mesh `share` of 256, spread by a hash.
+inline bool is_rejected(std::uint32_t primitive, unsigned share) {
+  return (primitive * 2654435761u) >> 24 < share;
+}
+// Embree with filters, one ray a call.
+class EmbreeFilters {
+ public:
+  // Throws std::runtime_error where this build has no Embree, or Embree reports an error.
+  EmbreeFilters(const Mesh& mesh, bool is_robust);
+  ~EmbreeFilters();
+
+  // All hits of each ray, sorted as ours are: a filter callback records each hit and rejects it, as Embree's manual
+  // says.
+  void all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const;
+  // Whether each ray has a hit that is_rejected() does not reject: the nearest one is looked for, or any.
+  void keep(std::span<const Ray> rays, bool only_decides, unsigned share,
+            std::span<std::uint8_t> found) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
 // CGAL's AABB_tree with exact predicates and inexact constructions: first_intersected_primitive().
 // Rays begin at their origin and have no end.
 class CgalDoubles {

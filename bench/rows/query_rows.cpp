@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <memory>
 
-#include "../contenders/embree/embree_contender.hpp"
 #include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_crossings.hpp"
 
 namespace raylanes::bench {
 namespace {
+
+// The shares of triangles that filters reject, in percent.
+constexpr unsigned rejected_percent[] = {0, 50, 90};
+std::string kept_name(unsigned percent) {
+  return "kept, " + std::to_string(percent) + " % rejected";
+}
+unsigned share_of(unsigned percent) {
+  return 256 * percent / 100;
+}
 
 // A contender's work, and how many items ray i has after it.
 struct Work {
@@ -23,7 +32,12 @@ struct Work {
 class Race {
  public:
   Race(const Scene& scene, const Bvh& bvh, const RaySet& set, const QueryOptions& options)
-      : scene_(scene), bvh_(bvh), rays_(set.rays), name_(set.name), options_(options) {}
+      : scene_(scene),
+        bvh_(bvh),
+        rays_(set.rays),
+        only_decides_(set.query == Query::any),
+        name_(set.name),
+        options_(options) {}
 
   void add_ours(ListQuery query, const Path* path) {
     const ListOptions how{.path = path, .threads = options_.threads};
@@ -45,9 +59,42 @@ class Race {
            [=](std::size_t i) { return std::size_t{(*counts)[i].crossings}; }});
     }
   }
+  // The nearest hit, or any for rays that ask for that, that a filter keeps: one ray a call, and as a batch.
+  void add_kept(unsigned percent, const Path* path) {
+    const unsigned share = share_of(percent);
+    const auto rejects = [=](const Hit& hit) { return is_rejected(hit.primitive, share); };
+    const HitFilter filter = [=](std::span<const std::size_t>, std::span<const Hit> hits,
+                                 std::span<std::uint8_t> rejected) {
+      for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = rejects(hits[k]) ? 1 : 0;
+    };
+    const TraceOptions one{.path = path}, many{.path = path, .threads = options_.threads};
+    const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
+    const auto hits = std::make_shared<std::vector<Hit>>(rays_.size());
+    const auto found_by = [=](std::size_t i) { return std::size_t{(*found)[i]}; };
+    add({{kept_name(percent), name_, "raylanes", path->name, rays_.size()},
+         [=, this] {
+           for (std::size_t i = 0; i < rays_.size(); ++i)
+             (*found)[i] = only_decides_ ? bvh_.occluded(rays_[i], rejects, one)
+                                         : static_cast<bool>(bvh_.closest(rays_[i], rejects, one));
+         },
+         found_by});
+    add({{kept_name(percent), name_, "raylanes, a batch", path->name, rays_.size()},
+         [=, this] {
+           if (only_decides_) return bvh_.occluded(rays_, *found, filter, many);
+           bvh_.closest(rays_, *hits, filter, many);
+           for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
+         },
+         found_by});
+  }
+  void add_embree_kept(unsigned percent) {
+    const auto embree = std::make_shared<EmbreeFilters>(scene_.mesh, false);
+    const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
+    add({{kept_name(percent), name_, "embree filter", "best", rays_.size()},
+         [=, this] { embree->keep(rays_, only_decides_, share_of(percent), *found); },
+         [=](std::size_t i) { return std::size_t{(*found)[i]}; }});
+  }
   void add_embree() {
-    const auto embree = std::make_shared<EmbreeContender>(scene_.mesh.vertices, scene_.mesh.triangles, "",
-                                                          EmbreeBuild::filtered);
+    const auto embree = std::make_shared<EmbreeFilters>(scene_.mesh, true);
     const auto lists = std::make_shared<RayLists<Hit>>();
     add({{"all", name_, "embree filter, robust", "best", rays_.size()},
          [=, this] { embree->all_hits(rays_, *lists); },
@@ -107,24 +154,35 @@ class Race {
       const std::size_t items = work.items_of(i);
       if (items == none) continue;
       ++row.judged;
-      auto& known = work.row.query == "all" ? hits_ : crossings_;
-      if (known.size() <= i / step)
-        known.push_back(
-            work.row.query == "all"
-                ? oracle::all_exact_hits(scene_.mesh.vertices, scene_.mesh.triangles, rays_[i]).size()
-                : oracle::exact_crossings(scene_.mesh.vertices, scene_.mesh.triangles, rays_[i]).size());
+      std::vector<std::size_t>& known = known_[work.row.query];
+      if (known.size() <= i / step) known.push_back(exact_items(work.row.query, rays_[i]));
       row.wrong += known[i / step] == items ? 0 : 1;
     }
+  }
+
+  std::size_t exact_items(const std::string& query, const Ray& ray) const {
+    const Mesh& mesh = scene_.mesh;
+    const bool counts_crossings = query == "crossings" || query == "count";
+    if (counts_crossings) return oracle::exact_crossings(mesh.vertices, mesh.triangles, ray).size();
+    const std::vector<Hit> hits = oracle::all_exact_hits(mesh.vertices, mesh.triangles, ray);
+    for (const unsigned percent : rejected_percent)
+      if (query == kept_name(percent))
+        return std::ranges::all_of(
+                   hits, [&](const Hit& hit) { return is_rejected(hit.primitive, share_of(percent)); })
+                   ? 0
+                   : 1;
+    return hits.size();
   }
 
   const Scene& scene_;
   const Bvh& bvh_;
   const std::vector<Ray>& rays_;
+  const bool only_decides_;
   std::string name_;
   const QueryOptions& options_;
   std::vector<Work> works_;
   std::size_t ours_ = 0;
-  std::vector<std::size_t> hits_, crossings_;  // of judged rays
+  std::map<std::string, std::vector<std::size_t>> known_;  // items of judged rays, by query
 };
 
 }  // namespace
@@ -137,9 +195,16 @@ std::vector<QueryRow> query_rows(const Scene& scene, const QueryOptions& options
     const RaySet set = workload.rays(kind);
     if (set.rays.empty()) continue;
     Race race(scene, bvh, set, options);
+    const bool lists = std::ranges::any_of(options.queries, [](ListQuery q) { return q != ListQuery::kept; });
     for (const ListQuery query : options.queries)
-      for (const Path* path : options.paths) race.add_ours(query, path);
-    if (options.against_embree) race.add_embree();
+      for (const Path* path : options.paths)
+        if (query != ListQuery::kept) race.add_ours(query, path);
+    if (options.against_embree && lists) race.add_embree();
+    for (const unsigned percent : rejected_percent) {
+      if (!std::ranges::count(options.queries, ListQuery::kept)) break;
+      for (const Path* path : options.paths) race.add_kept(percent, path);
+      if (options.against_embree) race.add_embree_kept(percent);
+    }
     // Its rays have no end.
     if (options.against_cgal && std::isinf(set.rays[0].tmax)) race.add_cgal();
     for (QueryRow& row : race.run()) rows.push_back(std::move(row));

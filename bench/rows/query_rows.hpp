@@ -12,8 +12,8 @@
 
 namespace raylanes::bench {
 
-enum class ListQuery : std::uint8_t { all, crossings, count };
-inline constexpr std::array<std::string_view, 3> list_query_names{"all", "crossings", "count"};
+enum class ListQuery : std::uint8_t { all, crossings, count, kept };
+inline constexpr std::array<std::string_view, 4> list_query_names{"all", "crossings", "count", "kept"};
 
 // One contender on one ray set. CGAL has a part of the rays only, as many as it counts in some time.
 struct QueryRow {

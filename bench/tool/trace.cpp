@@ -348,7 +348,8 @@ void add_trace_command(CLI::App& tool) {
           "groups of the file")
       ->capture_default_str();
   add_choices(*command, "--query", options->queries, list_query_names,
-              "find lists of hits, crossings or their number instead of the nearest hit");
+              "find lists of hits, crossings or their number, or hits that a filter keeps, instead of the "
+              "nearest hit");
   add_number(*command, "--samples", trace.samples, {1, 1024},
              "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre");
   add_choice(*command, "--order", trace.order, pixel_order_names,

@@ -72,6 +72,7 @@ struct DoubleRayKernels {
   // A ray in a call of its own, as ChosenCallRow.
   HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
   bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
+  KeptRow<DoubleTreeView, double> kept;
   // As in TraversalKernels, by numbers of TrianglesOfHalves.
   std::uint32_t (*nearest_triangle)(const DoubleTreeView& tree, const RayD& ray);
   void (*closest)(const DoubleTreeView& tree, const DoubleBatch& batch);

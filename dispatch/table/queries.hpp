@@ -71,6 +71,25 @@ struct VisitBatch {
   TraceCounters* counters = nullptr;
 };
 
+// A search of one ray whose caller keeps some hits, of the sides that `facing` names, but of the skipped primitive, by
+// t and then by primitives. The function is asked about each of these that would be the best so far. If the tree has a
+// triangle in several leaves, it may be asked again.
+template <class T>
+struct AskedOf {
+  bool (*rejects)(void* function, const HitOf<T>& hit) = nullptr;  // null: none is rejected
+  void* function = nullptr;
+  Facing facing = Facing::any;
+  std::uint32_t skipped = no_primitive;
+  const HitOf<T>* after = nullptr;  // only hits behind this one count; null: all
+  bool any = false;                 // whether the first hit that is kept ends the search
+};
+// The nearest hit that is kept, or whether there is one.
+template <class Tree, class T>
+struct KeptRow {
+  HitOf<T> (*closest)(const Tree& tree, const RayOf<T>& ray, const AskedOf<T>& asked);
+  bool (*any)(const Tree& tree, const RayOf<T>& ray, const AskedOf<T>& asked);
+};
+
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
 // directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are crossings or sides.
@@ -85,7 +104,8 @@ struct QueryKernels {
   // Nearest hits and any hits of the triangles that batch.facing and batch.skip leave: single rays, and streams. The
   // latter are null in the counted row. `next` and lists look at these, too.
   TraversalRow chosen_single, chosen_stream;
-  ChosenCallRow chosen_call;  // null in the counted row
+  ChosenCallRow chosen_call;      // null in the counted row
+  KeptRow<TreeView, float> kept;  // null in the counted row
   // The nearest hits behind the hits of batch.after, in the order of t and then of primitives; null: nearest hits.
   void (*next)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.

@@ -192,17 +192,37 @@ class BvhD {
                         const Filter& filter, const TraceOptionsD& options = {}) const {
     filtered_occluded_towards(direction, points, occluded, filter, options);
   }
-  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  /// Returns the nearest hit of the ray for which rejects(hit) is false.
+  /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
+  /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
+  /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
+  /// call all_hits() or closest() with options.after.
   template <std::predicate<const HitD&> Rejects>
-  HitD closest(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options = {}) const {
-    return detail::first_kept(
-        options, [&](const TraceOptionsD& next) { return closest(ray, next); }, rejects);
+  HitD closest(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options) const {
+    return detail::with_rejection<HitD>(rejects, [&](const detail::Rejection<HitD>& rejection) {
+      return closest_kept(ray, rejection, &options);
+    });
   }
-  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  /// Returns the nearest hit of the ray for which rejects(hit) is false, on the active path.
   template <std::predicate<const HitD&> Rejects>
-  bool occluded(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options = {}) const {
-    return detail::is_any_kept(
-        options, [&](const TraceOptionsD& next) { return closest(ray, next); }, rejects);
+  HitD closest(const RayD& ray, Rejects&& rejects) const {
+    return detail::with_rejection<HitD>(rejects, [&](const detail::Rejection<HitD>& rejection) {
+      return closest_kept(ray, rejection, nullptr);
+    });
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false. rejects() is asked as in closest(),
+  /// until it keeps a hit.
+  template <std::predicate<const HitD&> Rejects>
+  bool occluded(const RayD& ray, Rejects&& rejects, const TraceOptionsD& options) const {
+    return detail::with_rejection<HitD>(rejects, [&](const detail::Rejection<HitD>& rejection) {
+      return any_kept(ray, rejection, &options);
+    });
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false, on the active path.
+  template <std::predicate<const HitD&> Rejects>
+  bool occluded(const RayD& ray, Rejects&& rejects) const {
+    return detail::with_rejection<HitD>(
+        rejects, [&](const detail::Rejection<HitD>& rejection) { return any_kept(ray, rejection, nullptr); });
   }
 
   /// Returns every hit of each ray once, in the order of t, then of primitives.
@@ -284,6 +304,10 @@ class BvhD {
  private:
   friend struct TreeOf;
   explicit BvhD(std::unique_ptr<struct BvhDArrays> tree) noexcept;
+  HitD closest_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
+                    const TraceOptionsD* options) const;
+  bool any_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
+                const TraceOptionsD* options) const;
   void filtered_closest(RayViewD rays, HitViewD hits, const HitFilterD& filter,
                         const TraceOptionsD& options) const;
   void filtered_closest(const RayArraysD& rays, HitViewD hits, const HitFilterD& filter,

@@ -297,26 +297,20 @@ using AfterView = AfterRecords<Hit>;
 
 namespace detail {
 
-// Throws std::invalid_argument unless a filter's rays have an order of hits. Compiled, as headers throw nothing.
-void require_ordered_hits(bool are_ordered);
-
-// The first hit of a ray that is not rejected. closest(options) is the first one behind options.after.
-template <class Options, class Closest, class Rejects>
-auto first_kept(Options options, const Closest& closest, Rejects& rejects) {
-  if constexpr (requires { options.test; })
-    require_ordered_hits(options.test == decltype(options.test)::exact);
-  auto hit = closest(options);
-  while (hit && rejects(std::as_const(hit))) {
-    options.after = hit;
-    hit = closest(options);
-  }
-  return hit;
-}
-// Whether there is one; `after` is of closest() only.
-template <class Options, class Closest, class Rejects>
-bool is_any_kept(Options options, const Closest& closest, Rejects& rejects) {
-  options.after = {};
-  return static_cast<bool>(first_kept(options, closest, rejects));
+// A caller's function that rejects hits, for one call.
+template <class AnyHit>
+struct Rejection {
+  bool (*rejects)(void* function, const AnyHit& hit);
+  void* function;
+};
+// Calls find(rejection). `rejects` may be any function or object.
+template <class AnyHit, class Rejects, class Find>
+auto with_rejection(Rejects& rejects, const Find& find) {
+  const auto ask = [&](const AnyHit& hit) -> bool { return static_cast<bool>(rejects(hit)); };
+  using Ask = std::remove_const_t<decltype(ask)>;
+  return find(Rejection<AnyHit>{
+      [](void* function, const AnyHit& hit) { return (*static_cast<const Ask*>(function))(hit); },
+      const_cast<void*>(static_cast<const void*>(&ask))});
 }
 
 }  // namespace detail

@@ -256,19 +256,26 @@ class Scene {
                         std::uint32_t mask = ~0u) const {
     filtered_occluded_towards(direction, points, occluded, filter, options, mask);
   }
-  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  /// Returns the nearest hit of the ray for which rejects(hit) is false.
+  /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
+  /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
+  /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
+  /// call all_hits() or closest() with options.after.
   template <std::predicate<const SceneHit&> Rejects>
   SceneHit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
                    std::uint32_t mask = ~0u) const {
-    return detail::first_kept(
-        options, [&](const TraceOptions& next) { return closest(ray, next, mask); }, rejects);
+    return detail::with_rejection<SceneHit>(rejects, [&](const detail::Rejection<SceneHit>& rejection) {
+      return closest_kept(ray, rejection, options, mask);
+    });
   }
-  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false. rejects() is asked as in closest(),
+  /// until it keeps a hit.
   template <std::predicate<const SceneHit&> Rejects>
   bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
                 std::uint32_t mask = ~0u) const {
-    return detail::is_any_kept(
-        options, [&](const TraceOptions& next) { return closest(ray, next, mask); }, rejects);
+    return detail::with_rejection<SceneHit>(rejects, [&](const detail::Rejection<SceneHit>& rejection) {
+      return any_kept(ray, rejection, options, mask);
+    });
   }
 
   /// Computes the unit normal in the scene of each hit: normals[i] belongs to hits[i], hits in scenes or records that
@@ -304,6 +311,10 @@ class Scene {
   [[gnu::cold, gnu::visibility("hidden")]] bool occluded_by_options(const Ray& ray,
                                                                     const TraceOptions& options,
                                                                     std::uint32_t mask) const;
+  SceneHit closest_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
+                        const TraceOptions& options, std::uint32_t mask) const;
+  bool any_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection, const TraceOptions& options,
+                std::uint32_t mask) const;
   void filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
                         const TraceOptions& options, std::uint32_t mask) const;
   void filtered_closest(const RayArrays& rays, SceneHitView hits, const SceneHitFilter& filter,

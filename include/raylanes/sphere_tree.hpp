@@ -80,14 +80,15 @@ class SphereTree {
   /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
   template <std::predicate<const Hit&> Rejects>
   Hit closest(const Ray& ray, Rejects&& rejects, const VisitOptions& options = {}) const {
-    return detail::first_kept(
-        options, [&](const VisitOptions& next) { return closest(ray, next); }, rejects);
+    return detail::with_rejection<Hit>(rejects, [&](const detail::Rejection<Hit>& rejection) {
+      return closest_kept(ray, rejection, options);
+    });
   }
   /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
   template <std::predicate<const Hit&> Rejects>
   bool occluded(const Ray& ray, Rejects&& rejects, const VisitOptions& options = {}) const {
-    return detail::is_any_kept(
-        options, [&](const VisitOptions& next) { return closest(ray, next); }, rejects);
+    return detail::with_rejection<Hit>(
+        rejects, [&](const detail::Rejection<Hit>& rejection) { return any_kept(ray, rejection, options); });
   }
 
   Box bounds() const noexcept;        ///< the box around all spheres
@@ -97,6 +98,9 @@ class SphereTree {
   std::size_t bytes() const noexcept;  ///< the bytes of nodes and spheres
 
  private:
+  Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                   const VisitOptions& options) const;
+  bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const VisitOptions& options) const;
   void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                         const VisitOptions& options) const;
   void filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,

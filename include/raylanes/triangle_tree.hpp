@@ -33,7 +33,6 @@ enum class BatchHint : std::uint8_t {
 };
 
 /// The names of the hints, by enumerator.
-
 inline constexpr std::array<std::string_view, 5> batch_hint_names{"none", "shared_origin", "shared_end",
                                                                   "coherent", "incoherent"};
 
@@ -277,17 +276,36 @@ class TriangleTree {
                         const Filter& filter, const TraceOptions& options = {}) const {
     filtered_occluded_towards(direction, points, occluded, filter, options);
   }
-  /// Returns the nearest hit of the ray for which rejects(hit) is false. If it is true, the ray goes on behind the hit.
+  /// Returns the nearest hit of the ray for which rejects(hit) is false.
+  /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
+  /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
+  /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
+  /// call all_hits() or closest() with options.after.
   template <std::predicate<const Hit&> Rejects>
-  Hit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {}) const {
-    return detail::first_kept(
-        options, [&](const TraceOptions& next) { return closest(ray, next); }, rejects);
+  Hit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options) const {
+    return detail::with_rejection<Hit>(rejects, [&](const detail::Rejection<Hit>& rejection) {
+      return closest_kept(ray, rejection, &options);
+    });
   }
-  /// Returns whether the ray's segment has a hit for which rejects(hit) is false.
+  /// Returns the nearest hit of the ray for which rejects(hit) is false, on the active path.
   template <std::predicate<const Hit&> Rejects>
-  bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {}) const {
-    return detail::is_any_kept(
-        options, [&](const TraceOptions& next) { return closest(ray, next); }, rejects);
+  Hit closest(const Ray& ray, Rejects&& rejects) const {
+    return detail::with_rejection<Hit>(rejects, [&](const detail::Rejection<Hit>& rejection) {
+      return closest_kept(ray, rejection, nullptr);
+    });
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false. rejects() is asked as in closest(),
+  /// until it keeps a hit.
+  template <std::predicate<const Hit&> Rejects>
+  bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options) const {
+    return detail::with_rejection<Hit>(
+        rejects, [&](const detail::Rejection<Hit>& rejection) { return any_kept(ray, rejection, &options); });
+  }
+  /// Returns whether the ray's segment has a hit for which rejects(hit) is false, on the active path.
+  template <std::predicate<const Hit&> Rejects>
+  bool occluded(const Ray& ray, Rejects&& rejects) const {
+    return detail::with_rejection<Hit>(
+        rejects, [&](const detail::Rejection<Hit>& rejection) { return any_kept(ray, rejection, nullptr); });
   }
 
   /// Writes the corners of triangles: triangles[k] belongs to primitives[k], as the mesh had them at the last build or
@@ -315,6 +333,9 @@ class TriangleTree {
  private:
   // The tree that kernels traverse.
   virtual TracedTree traced() const noexcept = 0;
+  Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                   const TraceOptions* options) const;
+  bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const TraceOptions* options) const;
   void filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
                         const TraceOptions& options) const;
   void filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,

@@ -9,6 +9,7 @@
 namespace raylanes {
 
 RAYLANES_UNIT_TABLE(DoubleRayKernels, doubles, closest_double_of_ray, any_double_of_ray,
+                    KeptRow<DoubleTreeView, double>{closest_kept_double, any_kept_double},
                     nearest_triangle_of_ray, closest_doubles, any_double,
                     list_all<WalksFrame, DoubleList, NoCounters>, closest_double_stream, any_double_stream,
                     double_stream_bytes, packet_doubles, double_packet_bytes, closest_of_point<DoublePoints>,

@@ -2,12 +2,15 @@
 #pragma once
 
 #include "../exact/exact_test.hpp"
-#include "../traverse/single.hpp"
+#include "../traverse/kept_hit.hpp"
 #include "double_numbers.hpp"
 #include "frame_ray.hpp"
 
 namespace raylanes {
 namespace {
+
+// A hit behind which all hits are.
+inline constexpr HitD before_all_doubles{-std::numeric_limits<double>::infinity(), 0.0, 0.0, 0, 0};
 
 // The hit that is nearest by a rule: BothSides, or HitsBehind. Frame says where a t ends in the frame.
 template <class Rule, class Frame = FrameRay>
@@ -32,6 +35,14 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
     if (leaf_triangle != before) end = frame.end_of(tmax);
   }
   using DoubleCandidate::keep;
+
+  HitsBehind<HitD> rule_if_unusual() const {
+    if constexpr (std::is_same_v<Rule, BothSides>)
+      return {before_all_doubles, Facing::any};
+    else
+      return rule;
+  }
+  void take_unusual(std::uint32_t nearest) { leaf_triangle = nearest; }
 };
 
 // The triangles that the caller chooses, if they are hit: one code serves all sides.
@@ -63,6 +74,9 @@ struct AnyDouble : AsStored {
   AnyDouble(const RayD& ray, float end_of_ray, const ChosenHits& chosen = ChosenHits())
       : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
+
+  HitsBehind<HitD> rule_if_unusual() const { return {before_all_doubles, sides.facing, sides.skipped}; }
+  void take_unusual(std::uint32_t nearest) { found = nearest != no_leaf_triangle; }
 };
 
 // The leaves of a tree for one ray, from `begin` on.
@@ -84,12 +98,17 @@ class DoubleLeaves {
   template <class Query>
   bool visit(TreeReference reference, Query& query) const {
     const LeafReference leaf = leaf_of(reference);
-    const std::uint32_t first = DoubleTriangles::first_of(leaf);
-    if (leaf.size > tree_width / 2) return visit_rows<tree_width>(leaf, first, query);
-    return visit_rows<tree_width / 2>(leaf, first, query);
+    if (leaf.size > tree_width / 2)
+      return visit_rows<lanes_of_rows<tree_width>>(leaf, RowsOf<tree_width>(), query);
+    return visit_rows<lanes_of_rows<tree_width / 2>>(leaf, RowsOf<tree_width / 2>(), query);
   }
 
  private:
+  template <std::uint32_t rows>
+  using RowsOf = std::integral_constant<std::uint32_t, rows>;
+  template <int rows>
+  static constexpr int lanes_of_rows = double_lanes < rows ? double_lanes : rows;
+
   // The ray as Exact::classify() and visit_filtered() read it.
   template <class V>
   struct PreparedNumbers {
@@ -104,10 +123,11 @@ class DoubleLeaves {
     double tmin;
   };
 
-  template <int rows, class Query>
-  bool visit_rows(LeafReference leaf, std::uint32_t first, Query& query) const {
-    constexpr int N = double_lanes < rows ? double_lanes : rows;
+  // rows: lanes of the leaf, a multiple of N.
+  template <int N, class Rows, class Query>
+  bool visit_rows(LeafReference leaf, Rows rows, Query& query) const {
     using V = Doubles<N>;
+    const std::uint32_t first = DoubleTriangles::first_of(leaf);
     const double* const numbers = DoubleTriangles(tree_).numbers(first);
     const Prepared<V> prepared{{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
                                 {V(direction_[0]), V(direction_[1]), V(direction_[2])},
@@ -122,7 +142,10 @@ class DoubleLeaves {
                         *const z = numbers + row_[2] * rows;
     for (int at = 0; at < size; at += N) {
       const auto load = [&](int k) {
-        return V::load((k % 3 == 0 ? x : k % 3 == 1 ? y : z) + k / 3 * 3 * rows + at);
+        return V::load((k % 3 == 0   ? x
+                        : k % 3 == 1 ? y
+                                     : z) +
+                       static_cast<std::uint32_t>(k / 3 * 3) * rows + at);
       };
       const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
       if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
@@ -142,6 +165,52 @@ class DoubleLeaves {
 
 // Through all leaves that the query wants to see, of a ray that may hit something.
 template <class Query>
+inline void search_padded(const DoubleTreeView& tree, const DoubleLeaves& leaves, const FrameRay& frame,
+                          Query& query) {
+  const NodeTest<node_lanes> nodes(PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more),
+                                   frame.ray.tmin);
+  NoCounters counters(query);
+  walk_nodes(tree.tree, nodes, query, counters,
+             [&](TreeReference leaf) { return leaves.visit(leaf, query); });
+}
+
+#if defined(__AVX2__) && defined(__FMA__)
+// The triangle that is hit nearest by a ray that FusedRay leaves out: one code for all queries, as such rays are rare.
+[[gnu::noinline, gnu::flatten, maybe_unused]] std::uint32_t nearest_of_unusual(const DoubleTreeView& tree,
+                                                                               const RayD& ray,
+                                                                               const DoubleLeaves& leaves,
+                                                                               const FrameRay& frame,
+                                                                               const HitsBehind<HitD>& rule) {
+  NearestDouble<HitsBehind<HitD>> query(DoubleCandidate(ray), frame, rule, frame.ray.tmax);
+  search_padded(tree, leaves, frame, query);
+  return query.leaf_triangle;
+}
+// Asks about the hits of such a ray, the nearest one first.
+template <class Query>
+inline void ask_in_order(const DoubleTreeView& tree, const RayD& ray, const DoubleLeaves& leaves,
+                         const FrameRay& frame, Query& query) {
+  const AskedOf<double>& asked = query.asked;
+  HitD last = asked.after != nullptr ? *asked.after : before_all_doubles;
+  do {
+    const HitsBehind<HitD> rule{last, asked.facing, asked.skipped};
+    const std::uint32_t nearest = nearest_of_unusual(tree, ray, leaves, frame, rule);
+    if (nearest == no_leaf_triangle) return;
+    last = known_hit(DoubleTriangles(tree), ray, nearest);
+  } while (!query.take(last));
+}
+template <class Query>
+inline void search_unusual(const DoubleTreeView& tree, const RayD& ray, const DoubleLeaves& leaves,
+                           const FrameRay& frame, Query& query) {
+  if constexpr (asks<Query>)
+    ask_in_order(tree, ray, leaves, frame, query);
+  else if constexpr (requires { query.rule_if_unusual(); })
+    query.take_unusual(nearest_of_unusual(tree, ray, leaves, frame, query.rule_if_unusual()));
+  else
+    search_padded(tree, leaves, frame, query);
+}
+#endif
+
+template <class Query>
 inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame, Query& query) {
   const DoubleLeaves leaves(tree, ray, frame.begin);
 #if defined(__AVX2__) && defined(__FMA__)
@@ -151,12 +220,10 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame,
     return;
   }
   frame.take_any(tree.frame, ray);
+  search_unusual(tree, ray, leaves, frame, query);
+#else
+  search_padded(tree, leaves, frame, query);
 #endif
-  const NodeTest<node_lanes> nodes(PaddedSlabs::for_exact_hits(frame.ray, tree.tree.bounds, frame.more),
-                                   frame.ray.tmin);
-  NoCounters counters(query);
-  walk_nodes(tree.tree, nodes, query, counters,
-             [&](TreeReference leaf) { return leaves.visit(leaf, query); });
 }
 
 // Whether all triangles count for all rays.
@@ -174,9 +241,6 @@ template <class Rule>
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
-// A hit behind which all hits are.
-inline constexpr HitD before_all_doubles{-std::numeric_limits<double>::infinity(), 0.0, 0.0, 0, 0};
-
 // A ray in a call of its own.
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return nearest_triangle(tree, ray, ray.tmin, BothSides());
@@ -201,6 +265,39 @@ inline constexpr HitD before_all_doubles{-std::numeric_limits<double>::infinity(
 [[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
                                         std::uint32_t skipped) {
   return hits_any(tree, ray, ChosenHits(facing, skipped));
+}
+
+// A ray whose caller is asked about hits.
+struct RestInFrame : RestOfSegment<double> {
+  const FrameRay& frame;
+  float end;
+
+  RestInFrame(const RayD& ray, const FrameRay& of)
+      : RestOfSegment(finite_tmax(ray.tmax)), frame(of), end(of.ray.tmax) {}
+  float box_tmax() const { return end; }
+  void end_at(double t) { tmax = t, end = frame.end_of(t); }
+};
+struct KnownDoubles {
+  HitD operator()(const DoubleTriangles& triangles, const RayD& ray, std::uint32_t leaf_triangle) const {
+    return known_hit(triangles, ray, leaf_triangle);
+  }
+};
+[[gnu::noinline, gnu::flatten, maybe_unused]] HitD closest_kept_double(const DoubleTreeView& tree,
+                                                                       const RayD& ray,
+                                                                       const AskedOf<double>& asked) {
+  FrameRay frame(tree, ray, begin_behind(asked.after, ray.tmin));
+  if (!frame.may_hit) return {};
+  KeptHit<double, false, ChosenHits, RestInFrame, KnownDoubles> query(ray, asked, {ray, frame}, {});
+  query.beside = never_beside;
+  search(tree, ray, frame, query);
+  return query.best;
+}
+// The nearer children first as well, by the same code.
+[[maybe_unused]] bool any_kept_double(const DoubleTreeView& tree, const RayD& ray,
+                                      const AskedOf<double>& asked) {
+  AskedOf<double> any = asked;
+  any.any = true;
+  return static_cast<bool>(closest_kept_double(tree, ray, any));
 }
 
 }  // namespace

@@ -35,17 +35,10 @@ struct HitsFromBegin {
 struct HitsBehindLast {
   const DoubleBatch& batch;
 
-  // Nothing is behind a miss, nor behind NaN.
-  double begin(std::size_t i) const {
-    const HitD& last = last_of(i);
-    if (!(last.t < infinity)) return infinity;
-    return last.t > batch.rays[i].tmin ? last.t : batch.rays[i].tmin;
-  }
+  double begin(std::size_t i) const { return begin_behind(&last_of(i), batch.rays[i].tmin); }
   HitsBehind<HitD> rule(std::size_t i) const { return {last_of(i), batch.facing, skipped_by(batch, i)}; }
 
  private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
   const HitD& last_of(std::size_t i) const {
     return batch.after != nullptr ? batch.after[i] : before_all_doubles;
   }

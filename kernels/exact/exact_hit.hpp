@@ -68,9 +68,14 @@ template <class Triangles, class AnyRay>
   return Decided{hit_in_integers(triangles, ray, leaf_triangle)};
 }
 template <class Triangles, class AnyRay>
-inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
-  const auto decided = decided_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
+inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,
+                      const AlongAxes& along) {
+  const auto decided = decided_hit(triangles, ray, leaf_triangle, along);
   return decided.is_clear ? decided.hit : hit_in_integers(triangles, ray, leaf_triangle);
+}
+template <class Triangles, class AnyRay>
+inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
+  return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
 // A hit of which only t and the primitive matter: near edges only integers know u and v.
 template <class Triangles, class AnyRay>

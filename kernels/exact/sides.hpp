@@ -114,6 +114,12 @@ struct ChosenTriangles {
   }
 };
 
+// Whether a hit comes behind another one; null: behind none.
+template <class AnyHit>
+inline bool is_behind(const AnyHit& hit, const AnyHit* last) {
+  return last == nullptr || hit.t > last->t || (hit.t == last->t && hit.primitive > last->primitive);
+}
+
 // The rule by which only hits behind one count, of triangles that the caller chooses.
 template <class AnyHit>
 struct HitsBehind {
@@ -130,8 +136,7 @@ struct HitsBehind {
   template <class Triangles, class AnyRay>
   AnyHit counted(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
                  std::uint32_t leaf_triangle) const {
-    const bool is_behind = hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
-    if (!hit || !is_behind || hit.primitive == skipped) return {};
+    if (!hit || !is_behind(hit, &last) || hit.primitive == skipped) return {};
     return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };

@@ -1,52 +1,91 @@
-// The nearest hit behind an earlier one, in the order of t and then of primitives: a search from the earlier hit's t
-// on. A hit that floats are certain of is behind the earlier one; undecided hits are compared in that order.
+// Rays whose callers are asked about hits, and the nearest hit behind an earlier one, which asks nobody: a search from
+// the earlier hit's t on.
 #pragma once
 
-#include "../traverse/single.hpp"
+#include "../traverse/fused/calls.hpp"
+#include "../traverse/kept_hit.hpp"
 
 namespace raylanes {
 namespace {
 
-struct NextCandidate : NearestFirst, Candidate {
-  const Ray& whole;  // with the segment's own begin
-  HitsBehind<Hit> rule;
+using ExactOfAsked = Exact<Grade::reproducible>;
 
-  NextCandidate(const Ray& ray, const HitsBehind<Hit>& by) : Candidate(ray), whole(ray), rule(by) {}
-  float box_tmax() const { return tmax; }
+template <bool first_one, class Known>
+using KeptFloat = KeptHit<float, first_one, ChosenTriangles, RestOfSegment<float>, Known>;
 
-  template <class FilterResult>
-  void keep(const TreeView& tree, const Ray&, FilterResult filtered, std::uint32_t first) {
-    const TreeTriangles triangles(tree);
-    filtered.certain = rule.chosen(filtered.certain, filtered.det, triangles, first);
-    keep_nearest(triangles, whole, filtered, first, *this, rule);
+// A ray and the part of it that is left, which is not empty.
+struct AskingRay {
+  const Ray& ray;
+  const Ray& rest;
+  const AskedOf<float>& asked;
+
+  template <bool first_one, class Known>
+  KeptFloat<first_one, Known> query(const Known& known) const {
+    return {ray, asked, RestOfSegment<float>(finite_tmax(ray.tmax)), known};
   }
-  using Candidate::keep;
 };
 
-template <class Counters>
-inline std::uint32_t next_candidate(const TreeView& tree, const Ray& ray, const HitsBehind<Hit>& rule,
-                                    Counters& counters) {
-  NextCandidate query(ray, rule);
-  const Hit& last = rule.last;
-  // Nothing is behind a miss, nor behind NaN.
-  if (tree.root == empty_reference || !is_valid(ray) || !(last.t < std::numeric_limits<float>::infinity()))
-    return no_leaf_triangle;
-  Ray rest = ray;
-  if (last.t > rest.tmin) rest.tmin = last.t;
-  if (rest.tmin <= rest.tmax) WalksNodes::walk<Exact<Grade::reproducible>>(tree, rest, query, counters);
-  return query.leaf_triangle;
+#if defined(__AVX2__) && defined(__FMA__)
+struct KnownFusedHits {
+  const TreeView& tree;
+  const FusedRay& nodes;
+
+  Hit operator()(const TreeTriangles&, const Ray& ray, std::uint32_t leaf_triangle) const {
+    return known_hit(tree, ray, nodes, leaf_triangle);
+  }
+};
+// Rays with unusual numbers, and those that come to many triangles beside them, from the root.
+[[gnu::noinline, gnu::flatten, maybe_unused]] Hit kept_of_unusual(const TreeView& tree, const AskingRay& of) {
+  auto query = of.query<false>(KnownHits());
+  walk_unusual<ExactOfAsked>(tree, of.rest, query);
+  return query.best;
+}
+template <bool first_one>
+inline Hit kept_by(const TreeView& tree, const AskingRay& of, NoCounters&) {
+  FusedRay nodes;
+  if (!nodes.prepare<ExactOfAsked>(tree, of.rest)) [[unlikely]]
+    return kept_of_unusual(tree, of);
+  auto query = of.query<first_one>(KnownFusedHits{tree, nodes});
+  walk_fused(tree, nodes, ExactLeaves(tree, of.rest, nodes), query);
+  return query.beside > max_beside ? kept_of_unusual(tree, of) : query.best;
+}
+#endif
+template <bool first_one, class Counters>
+inline Hit kept_by(const TreeView& tree, const AskingRay& of, Counters& counters) {
+  auto query = of.query<first_one>(KnownHits());
+  if (is_valid(of.rest)) walk_padded<ExactOfAsked>(tree, of.rest, query, counters);
+  return query.best;
 }
 
-inline constexpr Hit before_all{-std::numeric_limits<float>::infinity(), 0.0f, 0.0f, 0};
+template <bool first_one, class Counters>
+inline Hit kept_hit(const TreeView& tree, const Ray& ray, const AskedOf<float>& asked, Counters& counters) {
+  Ray rest = ray;
+  rest.tmin = begin_behind(asked.after, ray.tmin);
+  if (tree.root == empty_reference || !(rest.tmin <= rest.tmax)) return {};
+  return kept_by<first_one>(tree, {ray, rest, asked}, counters);
+}
+
+[[gnu::noinline, gnu::flatten]] Hit closest_kept(const TreeView& tree, const Ray& ray,
+                                                 const AskedOf<float>& asked) {
+  NoCounters counters(ray);
+  return kept_hit<false>(tree, ray, asked, counters);
+}
+[[gnu::noinline, gnu::flatten]] bool any_kept(const TreeView& tree, const Ray& ray,
+                                              const AskedOf<float>& asked) {
+  NoCounters counters(ray);
+  return static_cast<bool>(kept_hit<true>(tree, ray, asked, counters));
+}
 
 template <class Counters>
 [[gnu::flatten, gnu::noinline]] void next_hits(const TreeView& tree, const TraceBatch& batch) {
   Counters counters(batch);
-  hits_of_some<1>(TreeTriangles(tree), batch, 0, [&](std::size_t i) {
-    const HitsBehind<Hit> rule{batch.after != nullptr ? batch.after[i] : before_all, batch.facing,
-                               skipped_by(batch, i)};
-    return next_candidate(tree, batch.rays[i], rule, counters);
-  });
+  AskedOf<float> asked;
+  asked.facing = batch.facing;
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    asked.skipped = skipped_by(batch, i);
+    asked.after = batch.after != nullptr ? batch.after + i : nullptr;
+    batch.hits[i] = kept_hit<false>(tree, batch.rays[i], asked, counters);
+  }
 }
 
 }  // namespace

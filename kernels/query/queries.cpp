@@ -32,6 +32,7 @@ constexpr AllQueryKernels all_queries() {
   kernels.plain.chosen_stream = {closest_stream<ExactTest, NoCounters, ChosenTriangles>,
                                  any_stream<ExactTest, NoCounters, ChosenTriangles>, OctantScratch::bytes};
   kernels.plain.chosen_call = {closest_chosen<ExactTest>, any_chosen<ExactTest>, nearer_chosen<ExactTest>};
+  kernels.plain.kept = {closest_kept, any_kept};
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) {

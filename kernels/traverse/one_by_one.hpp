@@ -97,10 +97,11 @@ inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& 
   return query.beside > max_beside;
 }
 template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
-requires(Query::only_decides) inline bool visit_filtered(const Tree& tree, const AnyRay& ray,
-                                                         const Prepared& prepared, Load load,
-                                                         std::uint32_t occupied, std::uint32_t leaf_triangle,
-                                                         Query& query, Counters& counters) {
+requires(Query::only_decides && !asks<Query>) inline bool visit_filtered(const Tree& tree, const AnyRay& ray,
+                                                                         const Prepared& prepared, Load load,
+                                                                         std::uint32_t occupied,
+                                                                         std::uint32_t leaf_triangle,
+                                                                         Query& query, Counters& counters) {
   using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
   auto filtered = Test::template classify<true>(
       prepared.triangles, load, occupied,
@@ -116,6 +117,26 @@ requires(Query::only_decides) inline bool visit_filtered(const Tree& tree, const
     query.found = any_exact_hit(TrianglesOfRay<AnyRay>(tree), ray, filtered.undecided, leaf_triangle,
                                 query.sides.facing, &query.beside);
   return query.found || query.beside > max_beside;
+}
+
+// And for a query that asks a caller about each hit.
+template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
+requires(asks<Query>) inline bool visit_filtered(const Tree& tree, const AnyRay&, const Prepared& prepared,
+                                                 Load load, std::uint32_t occupied,
+                                                 std::uint32_t leaf_triangle, Query& query,
+                                                 Counters& counters) {
+  using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
+  auto filtered = Test::template classify<true>(
+      prepared.triangles, load, occupied,
+      [&] {
+        return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.segment_end)};
+      },
+      query.sides);
+  const TrianglesOfRay<AnyRay> triangles(tree);
+  leave_chosen(triangles, filtered, leaf_triangle, query.sides);
+  if ((filtered.certain | filtered.undecided) == 0) return false;
+  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
+  return query.ask(triangles, filtered, leaf_triangle);
 }
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes

@@ -21,6 +21,12 @@
 namespace raylanes {
 namespace {
 
+// Whether a query asks its caller about each hit: see KeptHit.
+template <class Query>
+inline constexpr bool asks = requires {
+  requires Query::asks;
+};
+
 inline constexpr int node_lanes = native_lanes < tree_width ? native_lanes : tree_width;
 
 // Nearest child first. A subtree is dropped only if it begins behind the best hit: at equal distance it may hold a

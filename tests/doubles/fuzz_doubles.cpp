@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../fuzz/any_doubles.hpp"
+#include "../fuzz/any_filters.hpp"
 #include "../fuzz/query_checks.hpp"
 #include "../traverse/reference/in_flight.hpp"
 
@@ -155,6 +156,7 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   expect_active_alone(tree, rays, path, rule);
   const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(5));
   expect_lists(tree, rays, expected, {.max_count = most, .facing = facing, .path = path, .skip = skip});
+  expect_kept(tree, rays, expected.hits, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
   expect_next_hits(tree, rays, expected, path, facing, skip);
   expect_passages(tree, mesh, rays, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
   const bool flies = bytes.chance(48);

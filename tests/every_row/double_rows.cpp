@@ -3,6 +3,7 @@
 #include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "every_row.hpp"
+#include "kept_rows.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -148,6 +149,10 @@ TEST_P(EveryRow, of_doubles) {
     return;
   const BvhDArrays tree = some_tree();
   const TrianglesOfHalves triangles{tree.halves.data()};
+  const auto next = [&](const RayD& ray, Facing facing, std::uint32_t skipped, const HitD* last) {
+    return hits_of(of_scalar, tree, {ray}, facing, last, Rays::single, &skipped)[0];
+  };
+  compare_kept<double>(*this, mine.kept, of_scalar.kept, tree.view(), some_double_rays(), next);
   for (const std::size_t n : sizes)
     for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
       std::vector<RayD> rays = some_double_rays();

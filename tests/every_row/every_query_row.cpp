@@ -8,6 +8,7 @@
 #include "../../dispatch/table/winding.hpp"
 #include "../support/same_bytes.hpp"
 #include "every_row.hpp"
+#include "kept_rows.hpp"
 #include "small_tree.hpp"
 
 namespace raylanes::testing {
@@ -115,6 +116,20 @@ void compare_next(EveryRow& every, const QueryKernels& mine, const QueryKernels&
     last = found;
   }
 }
+
+struct NextOf {
+  const QueryKernels& kernels;
+  const TreeView& tree;
+
+  Hit operator()(const Ray& ray, Facing facing, std::uint32_t skipped, const Hit* last) const {
+    Hit hit;
+    TraceBatch batch;
+    batch.rays = &ray, batch.size = 1, batch.hits = &hit;
+    batch.facing = facing, batch.skip = &skipped, batch.after = last;
+    kernels.next(tree, batch);
+    return hit;
+  }
+};
 
 // Hits of chosen triangles, of rays alone or together, against next hits of these of scalar. chosen: for packets.
 void compare_chosen(EveryRow& every, const TraversalRow& mine, const TraversalRow& of_scalar,
@@ -311,6 +326,8 @@ TEST_P(EveryRow, of_queries) {
                      &rows.chosen_call);
     }
     compare_chosen_calls(*this, rows.chosen_call, scalars.chosen_call, scalars.chosen_single);
+    const SmallTree tree;
+    compare_kept<float>(*this, rows.kept, scalars.kept, tree.view, some_rays(), NextOf{scalars, tree.view});
     compare_visits(*this, rows, scalars, of_streams, false);
     compare_visits(*this, rows, scalars, of_packets, true);
     offers(rows.scratch_bytes, scalars.scratch_bytes);  // asked for by list_together

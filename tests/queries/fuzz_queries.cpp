@@ -5,6 +5,7 @@
 
 #include <raylanes/kdtree.hpp>
 
+#include "../fuzz/any_filters.hpp"
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/query_checks.hpp"
 
@@ -134,6 +135,7 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size) {
                    {.max_count = most, .facing = facing, .path = path, .threads = threads, .skip = skip});
       expect_passages(tree, mesh, rays,
                       TraceOptions{.path = path, .threads = threads, .facing = facing, .skip = skip});
+      expect_kept(tree, rays, expected.hits, TraceOptions{.path = path, .facing = facing, .skip = skip});
       return expect_next_hits(tree, rays, expected, path, facing, skip);
     }
     std::vector<Hit> passages(n);

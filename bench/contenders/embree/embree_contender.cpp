@@ -55,8 +55,6 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
 
 RTCSceneFlags flags_of(EmbreeBuild build) {
   if (build == EmbreeBuild::refitted) return RTC_SCENE_FLAG_DYNAMIC;
-  if (build == EmbreeBuild::filtered)
-    return static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   return build == EmbreeBuild::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
 }
 RTCBuildQuality quality_of(EmbreeBuild build) {
@@ -322,36 +320,6 @@ double EmbreeContender::trace_packed(EmbreeMode mode, bool coherent, const RaySe
                                                         set.rays, answers.occluded);
   scene_->check();
   return seconds;
-}
-
-void EmbreeContender::all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const {
-  const SubnormalsAreZero subnormals;
-  struct Gathering : RTCIntersectContext {
-    std::vector<Hit>* hits;
-  } context;
-  rtcInitIntersectContext(&context);
-  context.filter = [](const RTCFilterFunctionNArguments* a) {
-    const auto* ray = reinterpret_cast<const RTCRay*>(a->ray);
-    const auto* hit = reinterpret_cast<const RTCHit*>(a->hit);
-    static_cast<Gathering*>(a->context)->hits->push_back({ray->tfar, hit->u, hit->v, hit->primID});
-    a->valid[0] = 0;
-  };
-  context.hits = &lists.items;
-  lists.items.clear(), lists.offsets.assign(1, 0);
-  for (const Ray& ray : rays) {
-    if (traceable(ray)) {
-      RTCRayHit query;
-      query.ray = single_ray(ray);
-      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_->scene, &context, &query);
-      std::sort(
-          lists.items.begin() + static_cast<std::ptrdiff_t>(lists.offsets.back()), lists.items.end(),
-          [](const Hit& a, const Hit& b) { return a.t < b.t || (a.t == b.t && a.primitive < b.primitive); });
-    }
-    lists.offsets.push_back(lists.items.size());
-  }
-  scene_->check();
 }
 
 }  // namespace raylanes::bench

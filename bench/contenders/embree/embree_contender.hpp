@@ -25,10 +25,9 @@ struct Answers;
 enum class EmbreeMode { single, packet4, packet8, packet16 };
 
 // Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
-// the shortcuts that lose accuracy; and of low quality, by Morton codes. Two more are not traced. For meshes in motion:
-// a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings refits as fast. For
-// all hits: robust with a filter.
-enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted, filtered };
+// the shortcuts that lose accuracy; and of low quality, by Morton codes. One more is not traced, for meshes in motion:
+// a dynamic scene of low quality, whose geometry is refitted; no other combination of its settings refits as fast.
+enum class EmbreeBuild : std::uint8_t { medium, high, robust, low, refitted };
 inline constexpr std::array<std::string_view, 4> embree_build_names{"medium", "high", "robust", "low"};
 
 // One line: the file that the dynamic linker took for Embree, and what to know of it beside a ratio.
@@ -74,10 +73,6 @@ class EmbreeContender {
   // Traces as trace() does. Returns the seconds of Embree's own calls: rays are in its layout before the clock starts,
   // and results are converted after it has stopped. Allocates that layout.
   double trace_packed(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const;
-
-  // All hits of each ray, sorted as ours are: a filter callback records each hit and rejects it, as Embree's manual
-  // says. For the build `filtered`.
-  void all_hits(std::span<const Ray> rays, RayLists<Hit>& lists) const;
 
  private:
   struct Scene;

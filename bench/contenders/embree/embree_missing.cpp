@@ -42,9 +42,6 @@ void EmbreeContender::trace(EmbreeMode, bool, const RaySet&, Answers&) const {
 double EmbreeContender::trace_packed(EmbreeMode, bool, const RaySet&, Answers&) const {
   refuse();
 }
-void EmbreeContender::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
-  refuse();
-}
 
 struct EmbreeDoubles::Scene {};
 
@@ -66,6 +63,19 @@ EmbreePoints::EmbreePoints(const Mesh&) {
 }
 EmbreePoints::~EmbreePoints() = default;
 void EmbreePoints::closest(std::span<const Float3>, std::span<double>) const {
+  refuse();
+}
+
+struct EmbreeFilters::Scene {};
+
+EmbreeFilters::EmbreeFilters(const Mesh&, bool) {
+  refuse();
+}
+EmbreeFilters::~EmbreeFilters() = default;
+void EmbreeFilters::all_hits(std::span<const Ray>, RayLists<Hit>&) const {
+  refuse();
+}
+void EmbreeFilters::keep(std::span<const Ray>, bool, unsigned, std::span<std::uint8_t>) const {
   refuse();
 }
 

@@ -1,7 +1,6 @@
 #include <embree3/rtcore.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "../rivals.hpp"
@@ -63,19 +62,7 @@ struct EmbreePoints::Scene {
   PlainScene scene;
 
   explicit Scene(const Mesh& of)
-      : mesh(of), scene([&](RTCDevice device) {
-          const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-          put(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
-          put(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
-          return geometry;
-        }) {}
-
- private:
-  template <class T>
-  static void put(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const std::vector<T>& items) {
-    void* const buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(T), items.size());
-    if (buffer != nullptr) std::memcpy(buffer, items.data(), items.size() * sizeof(T));
-  }
+      : mesh(of), scene([&](RTCDevice device) { return triangles_of(device, mesh); }) {}
 };
 
 EmbreePoints::EmbreePoints(const Mesh& mesh) : scene_(std::make_unique<Scene>(mesh)) {}

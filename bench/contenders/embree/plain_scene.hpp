@@ -5,8 +5,12 @@
 #include <embree3/rtcore.h>
 #include <xmmintrin.h>
 
+#include <cstring>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include <raylanes/mesh.hpp>
 
 namespace raylanes::bench {
 
@@ -53,5 +57,18 @@ class PlainScene {
   RTCDevice device_;
   RTCScene scene_ = nullptr;
 };
+
+// A geometry of copies of a mesh.
+inline RTCGeometry triangles_of(RTCDevice device, const Mesh& mesh) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto put = [&](RTCBufferType type, RTCFormat format, const auto& items) {
+    const std::size_t size = sizeof(items[0]);
+    void* const buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, size, items.size());
+    if (buffer != nullptr) std::memcpy(buffer, items.data(), items.size() * size);
+  };
+  put(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
+  put(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+  return geometry;
+}
 
 }  // namespace raylanes::bench

@@ -58,7 +58,7 @@ class ExactLeaves {
     return false;
   }
   template <class Query>
-  requires(Query::only_decides) bool visit(TreeReference leaf, Query& query) const {
+  requires(Query::only_decides && !asks<Query>) bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
     std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
@@ -73,6 +73,22 @@ class ExactLeaves {
     query.found = any_exact_hit(TreeTriangles(tree_), ray_, undecided, leaf_triangle_of(leaf, 0),
                                 query.sides.facing, &query.beside);
     return query.found || query.beside > max_beside;
+  }
+
+  template <class Query>
+  requires(asks<Query>) bool visit(TreeReference leaf, Query& query) const {
+    V z[3];
+    const auto edges = edges_of(leaf, z);
+    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
+    if (undecided == 0) return false;
+    DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
+    V tmin(ray_.tmin), tmax(query.tmax);
+    undecided &= ~bits((t.t_lo > tmax) | (t.t_hi < tmin));
+    if (undecided == 0) return false;
+    const std::uint32_t certain =
+        undecided & bits(edges.certainly_inside() & (t.t_lo > tmin) & (t.t_hi < V(query.segment_end)));
+    return query.ask(TreeTriangles(tree_), FilterResult<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, {}},
+                     leaf_triangle_of(leaf, 0));
   }
 
   SignsOfWeights signs(TreeReference leaf) const {
