@@ -32,7 +32,9 @@ static_assert(sizeof(ClosestPoint) == 32);
 
 /// The point of some triangles of doubles that is closest to a query point: (1-u-v)·v0 + u·v1 + v·v2 of the triangle
 /// `primitive`. If there is none, both distances are +infinity, point, u and v are zeros, and primitive is
-/// no_primitive; so is a default-constructed one. Ties in distance_squared go to the lowest primitive.
+/// no_primitive; so is a default-constructed one. Ties in distance_squared go to the lowest primitive. Squares are
+/// compared in units of the mesh, in which none overflows: a triangle may be nearer although both squares are +infinity
+/// or 0.
 ///
 /// distance_squared is computed in doubles and has the same bits on every ISA path and in every tree. With d the exact
 /// distance, M the distance to the triangle's farthest corner, s the sine of the angle at v0 and u = 2^-53:

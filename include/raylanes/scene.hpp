@@ -260,7 +260,7 @@ class Scene {
   /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
   /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
   /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
-  /// call all_hits() or closest() with options.after.
+  /// call closest() with options.after.
   template <std::predicate<const SceneHit&> Rejects>
   SceneHit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
                    std::uint32_t mask = ~0u) const {

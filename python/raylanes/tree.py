@@ -17,8 +17,9 @@ from ._warn import warn
 class _Tree(RayQueries, PointQueries, StoredTree):
     """The base of Bvh and KdTree."""
 
+    # given: the vertices of the caller; vertices: the same as numbers of the tree. A comment, because help() would show
+    # a docstring under the constructors of Bvh and KdTree.
     def __init__(self, tree, given, vertices, faces):
-        """given: the vertices of the caller; vertices: the same as numbers of the tree."""
         self._tree = tree
         left_out = tree.left_out()
         if left_out:
