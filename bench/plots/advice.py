@@ -6,7 +6,7 @@ from rounds import ratios, speeds
 NOISY = 0.25  # the usual distance of the quartiles of a ratio, by its median, beyond which nothing is advised
 EQUAL = 1.02  # rows that are faster by less are equal
 
-REASONS = {'automatic': 'the default', 'single': 'rays that have little in common', 'packet': 'rays of one origin',
+REASONS = {'automatic': 'the default mode', 'single': 'rays that have little in common', 'packet': 'rays of one origin',
            'stream': 'many rays in any order'}
 
 

@@ -165,7 +165,8 @@ def advice_section(data, scenes):
                      row['mrays_per_second']))
     return section('advice', 'What to use', '<p>All ISA paths and modes took turns. The fastest call is taken. Among '
                    'calls that are as fast, within 2 % in a quarter of the rounds, it is the widest path and the '
-                   'default mode. If a run is too noisy to tell, give <code>--seconds</code> more.</p>',
+                   'default mode. Without <code>RAYLANES_PATH</code> or the option <code>path</code> calls take the '
+                   'widest path that runs here. If a run is too noisy to tell, give <code>--seconds</code> more.</p>',
                    table(['scene', 'rays', 'call', 'why', 'ISA path', 'Mrays/s'], rows))
 
 
