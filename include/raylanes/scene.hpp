@@ -154,9 +154,9 @@ class Scene {
   /// Gives an instance another transform. Throws std::out_of_range if there is no such instance.
   void move(std::uint32_t instance, const Transform& transform);
   /// Gives an instance another mask, at once, without update(). If the instance is in a common tree, it is struck out
-  /// and traced by itself. Such a call takes the time of an update(): 0.1 µs for each instance, less than a millisecond
-  /// for 1,000 triangles, and the build of the geometry's tree if it has none. From the 17th such call after an
-  /// update() on, rays go through each instance by itself until the next update(), which is slower.
+  /// and traced by itself. Such a call takes the time of an update(): 0.2 to 0.4 µs for each instance, less than
+  /// a millisecond for 1,000 triangles, and the build of the geometry's tree if it has none. From the 17th such call
+  /// after an update() on, rays go through each instance by itself until the next update(), which is slower.
   /// Throws std::out_of_range if there is no such instance. Strong exception guarantee, as for update().
   void set_mask(std::uint32_t instance, std::uint32_t mask);
   /// Says that an instance will move, or change otherwise, so that it is in no common tree from the next update()
@@ -170,10 +170,11 @@ class Scene {
   std::uint32_t mask_of(std::uint32_t instance) const;
   std::size_t instance_count() const noexcept;  ///< the number of instances
 
-  /// Makes the scene ready for queries. Builds the tree over the instances again, in about 0.1 µs for each. Builds
-  /// common trees where the rules of the class say so, in the time of a Bvh of their triangles. An instance of 1,000
-  /// triangles is struck out of a common tree in less than a millisecond. If a copy of the scene has that tree, too,
-  /// it is copied first. Large instances that overlap are opened for calls with one ray, in up to 0.5 ms.
+  /// Makes the scene ready for queries. Builds the tree over the instances again, in 0.2 to 0.4 µs for each of
+  /// hundreds, or more if caches are cold. Builds common trees where the rules of the class say so, in the time of a
+  /// Bvh of their triangles. An instance of 1,000 triangles is struck out of a common tree in less than a millisecond.
+  /// If a copy of the scene has that tree, too, it is copied first. Large instances that overlap are opened for calls
+  /// with one ray, in up to 0.5 ms.
   /// `threads` is as in TraceOptions, for common trees and the trees of meshes.
   /// Throws std::invalid_argument if the thread count is negative. Strong exception guarantee: if this throws, the
   /// scene is unchanged.

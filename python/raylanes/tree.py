@@ -17,8 +17,8 @@ from ._warn import warn
 class _Tree(RayQueries, PointQueries, StoredTree):
     """The base of Bvh and KdTree."""
 
-    # given: the vertices of the caller; vertices: the same as numbers of the tree. A comment, because help() would show
-    # a docstring under the constructors of Bvh and KdTree.
+    # given: the vertices of the caller; vertices: the same as numbers of the tree. This is no docstring, because help()
+    # would show that under the constructors of Bvh and KdTree.
     def __init__(self, tree, given, vertices, faces):
         self._tree = tree
         left_out = tree.left_out()
