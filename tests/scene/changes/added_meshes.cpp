@@ -48,7 +48,17 @@ TEST(AddedMeshes, have_a_tree_from_when_it_is_needed) {
   scene.refit(5, cube_at(10).vertices, cube_at(10).triangles), scene.update();  // the tree is refitted
   EXPECT_EQ(scene.report().meshes_without_tree, 17u);
   expect_cubes(scene, 20);
-  scene.set_mask(6, 1);  // all are asked by themselves
+  scene.set_mask(6, 1);  // it is traced by itself
+  expect_cubes(scene, 20);
+  EXPECT_EQ(scene.report().meshes_without_tree, 16u);
+}
+
+TEST(AddedMeshes, have_trees_once_all_are_traced_by_themselves) {
+  Scene scene = cubes(20);
+  scene.update();
+  for (std::uint32_t i = 0; i < 16; ++i) scene.set_mask(i, 1);
+  EXPECT_EQ(scene.report().meshes_without_tree, 4u);
+  scene.set_mask(16, 1);  // more of them would cost more
   expect_cubes(scene, 20);
   EXPECT_EQ(scene.report().meshes_without_tree, 0u);
 }
