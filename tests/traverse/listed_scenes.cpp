@@ -47,7 +47,7 @@ TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
   const std::size_t rays = std::clamp<std::size_t>(tests / mesh.triangles.size(), 20, 8000);
   for (const float reach : {1.0f, 3.0f}) {
     SCOPED_TRACE("origins within " + std::to_string(reach) + " times the bounds");
-    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, rays / 2, reach * half, centre, 1)), 0u);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, rays / 2, reach * half, centre, 1), hard), 0u);
   }
 }
 

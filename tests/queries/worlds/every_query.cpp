@@ -162,7 +162,8 @@ class EveryQuery : public ::testing::Test {
  public:
   // Rational numbers of doubles take longer.
   static std::size_t rays(std::size_t all) {
-    return std::is_same_v<T, float> ? by_level(all) : by_level(all / 3, all / 3, all);
+    return std::is_same_v<T, float> ? by_level(all / 3, all / 3, all / 2)
+                                    : by_level(all / 5, all / 5, all / 3);
   }
 };
 TYPED_TEST_SUITE(EveryQuery, Numbers, NumberNames);

@@ -28,8 +28,9 @@ void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<
                  const TraceOptions& base = {});
 
 // The same with the hits of exact arithmetic over the mesh, for a BVH in both grades (one where quick() holds) and for
-// k-d trees. The watertight test of the reproducible grade has the hits of brute_force. Returns how many rays hit.
-std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays);
+// k-d trees. The watertight test of the reproducible grade has the hits of brute_force; in cells of needles it has not,
+// as most rays come nearly in the plane of one, which is outside of its promise. Returns how many rays hit.
+std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays, bool are_needles = false);
 
 // Through the tree, with the hits of exact arithmetic, also where subnormals count as zeros. Returns how many hit.
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays);
