@@ -185,25 +185,10 @@ inline void search_padded(const DoubleTreeView& tree, const DoubleLeaves& leaves
   search_padded(tree, leaves, frame, query);
   return query.leaf_triangle;
 }
-// Asks about the hits of such a ray, the nearest one first.
-template <class Query>
-inline void ask_in_order(const DoubleTreeView& tree, const RayD& ray, const DoubleLeaves& leaves,
-                         const FrameRay& frame, Query& query) {
-  const AskedOf<double>& asked = query.asked;
-  HitD last = asked.after != nullptr ? *asked.after : before_all_doubles;
-  do {
-    const HitsBehind<HitD> rule{last, asked.facing, asked.skipped};
-    const std::uint32_t nearest = nearest_of_unusual(tree, ray, leaves, frame, rule);
-    if (nearest == no_leaf_triangle) return;
-    last = known_hit(DoubleTriangles(tree), ray, nearest);
-  } while (!query.take(last));
-}
 template <class Query>
 inline void search_unusual(const DoubleTreeView& tree, const RayD& ray, const DoubleLeaves& leaves,
                            const FrameRay& frame, Query& query) {
-  if constexpr (asks<Query>)
-    ask_in_order(tree, ray, leaves, frame, query);
-  else if constexpr (requires { query.rule_if_unusual(); })
+  if constexpr (requires { query.rule_if_unusual(); })
     query.take_unusual(nearest_of_unusual(tree, ray, leaves, frame, query.rule_if_unusual()));
   else
     search_padded(tree, leaves, frame, query);
@@ -241,6 +226,12 @@ template <class Rule>
   search(tree, ray, frame, query);
   return query.leaf_triangle;
 }
+#if !defined(__AVX2__) || !defined(__FMA__)
+// By the same code, which is much where walks are not fused.
+inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray, double begin, BothSides) {
+  return nearest_triangle(tree, ray, begin, HitsBehind<HitD>{before_all_doubles, Facing::any});
+}
+#endif
 // A ray in a call of its own.
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return nearest_triangle(tree, ray, ray.tmin, BothSides());
@@ -267,7 +258,20 @@ template <class Rule>
   return hits_any(tree, ray, ChosenHits(facing, skipped));
 }
 
-// A ray whose caller is asked about hits.
+// A ray whose caller is asked about hits: the nearest one first, each by a search.
+[[maybe_unused]] HitD kept_in_order(const DoubleTreeView& tree, const RayD& ray,
+                                    const AskedOf<double>& asked) {
+  HitD last = asked.after != nullptr ? *asked.after : before_all_doubles;
+  do {
+    const HitsBehind<HitD> rule{last, asked.facing, asked.skipped};
+    const std::uint32_t nearest = nearest_triangle(tree, ray, begin_behind(&last, ray.tmin), rule);
+    if (nearest == no_leaf_triangle) return {};
+    last = known_hit(DoubleTriangles(tree), ray, nearest);
+  } while (asked.rejects != nullptr && asked.rejects(asked.function, last));
+  return last;
+}
+#if defined(__AVX2__) && defined(__FMA__)
+// And in the walk.
 struct RestInFrame : RestOfSegment<double> {
   const FrameRay& frame;
   float end;
@@ -285,13 +289,22 @@ struct KnownDoubles {
 [[gnu::noinline, gnu::flatten, maybe_unused]] HitD closest_kept_double(const DoubleTreeView& tree,
                                                                        const RayD& ray,
                                                                        const AskedOf<double>& asked) {
-  FrameRay frame(tree, ray, begin_behind(asked.after, ray.tmin));
+  const FrameRay frame(tree, ray, begin_behind(asked.after, ray.tmin));
   if (!frame.may_hit) return {};
+  FusedRay fused;
+  if (!fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[unlikely]]
+    return kept_in_order(tree, ray, asked);
   KeptHit<double, false, ChosenHits, RestInFrame, KnownDoubles> query(ray, asked, {ray, frame}, {});
   query.beside = never_beside;
-  search(tree, ray, frame, query);
+  walk_fused(tree.tree, fused, DoubleLeaves(tree, ray, frame.begin), query);
   return query.best;
 }
+#else
+[[maybe_unused]] HitD closest_kept_double(const DoubleTreeView& tree, const RayD& ray,
+                                          const AskedOf<double>& asked) {
+  return kept_in_order(tree, ray, asked);
+}
+#endif
 // The nearer children first as well, by the same code.
 [[maybe_unused]] bool any_kept_double(const DoubleTreeView& tree, const RayD& ray,
                                       const AskedOf<double>& asked) {

@@ -70,21 +70,33 @@ inline Hit kept_hit(const TreeView& tree, const Ray& ray, const AskedOf<float>& 
   NoCounters counters(ray);
   return kept_hit<false>(tree, ray, asked, counters);
 }
+#if defined(__AVX2__) && defined(__FMA__)
 [[gnu::noinline, gnu::flatten]] bool any_kept(const TreeView& tree, const Ray& ray,
                                               const AskedOf<float>& asked) {
   NoCounters counters(ray);
   return static_cast<bool>(kept_hit<true>(tree, ray, asked, counters));
 }
+#else
+// The nearer children first as well, by the same code.
+bool any_kept(const TreeView& tree, const Ray& ray, const AskedOf<float>& asked) {
+  AskedOf<float> any = asked;
+  any.any = true;
+  return static_cast<bool>(closest_kept(tree, ray, any));
+}
+#endif
 
 template <class Counters>
 [[gnu::flatten, gnu::noinline]] void next_hits(const TreeView& tree, const TraceBatch& batch) {
-  Counters counters(batch);
+  [[maybe_unused]] Counters counters(batch);
   AskedOf<float> asked;
   asked.facing = batch.facing;
   for (std::size_t i = 0; i < batch.size; ++i) {
     asked.skipped = skipped_by(batch, i);
     asked.after = batch.after != nullptr ? batch.after + i : nullptr;
-    batch.hits[i] = kept_hit<false>(tree, batch.rays[i], asked, counters);
+    if constexpr (std::is_same_v<Counters, NoCounters>)
+      batch.hits[i] = closest_kept(tree, batch.rays[i], asked);
+    else
+      batch.hits[i] = kept_hit<false>(tree, batch.rays[i], asked, counters);
   }
 }
 
