@@ -126,8 +126,9 @@ class Race {
       QueryRow row = works_[k].row;
       row.mrays_per_second = 1e-6 * static_cast<double>(row.ray_count) / timings[k].median_seconds;
       // The last of ours is the best path.
-      if (k > 0 && row.contender != "raylanes" && row.query == works_[ours_].row.query)
-        row.ratio = speed_ratio(per_ray(ours_), per_ray(k));
+      const std::size_t ours = ours_of(row.query);
+      if (row.contender != "raylanes" && ours < works_.size())
+        row.ratio = speed_ratio(per_ray(ours), per_ray(k));
       for (std::size_t i = 0; i < rays_.size(); ++i) {
         const std::size_t items = works_[k].items_of(i);
         row.items += items == none ? 0 : items;
@@ -141,10 +142,13 @@ class Race {
  private:
   static constexpr std::size_t none = ~std::size_t{0};
 
-  void add(Work work) {
-    if (work.row.contender == "raylanes" && (works_.empty() || works_[ours_].row.query == work.row.query))
-      ours_ = works_.size();
-    works_.push_back(std::move(work));
+  void add(Work work) { works_.push_back(std::move(work)); }
+  // The number of works if there is none.
+  std::size_t ours_of(const std::string& query) const {
+    std::size_t ours = works_.size();
+    for (std::size_t k = 0; k < works_.size(); ++k)
+      if (works_[k].row.query == query && works_[k].row.contender == "raylanes") ours = k;
+    return ours;
   }
   // Rays that rational numbers look at, the same for all contenders.
   void judge(const Work& work, QueryRow& row) {
@@ -181,7 +185,6 @@ class Race {
   std::string name_;
   const QueryOptions& options_;
   std::vector<Work> works_;
-  std::size_t ours_ = 0;
   std::map<std::string, std::vector<std::size_t>> known_;  // items of judged rays, by query
 };
 

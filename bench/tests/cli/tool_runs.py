@@ -73,8 +73,9 @@ RUNS = [
      ("hall.png", 96, 64), "same bytes", lambda rows: values(of(rows, rays="primary"), "hits") == {96 * 64}),
     ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight --warm", None,
      "", lambda rows: calls_are_batches(rows) and values(rows, "warm") == {True}),
-    ("trace hall --query all,crossings,count --size 24x16 --against cgal", None, "", lambda rows:
-     right(rows, contender="raylanes") and values(rows, "query") == {"all", "crossings", "count"}),
+    ("trace hall --query all,crossings,count,kept --size 24x16 --against cgal", None, "", lambda rows:
+     right(rows, contender="raylanes") and values(rows, "query") ==
+     {"all", "crossings", "count", *(f"kept, {share} % rejected" for share in (0, 50, 90))}),
     ("trace hall --doubles --offset 1e6 --size 16x16 --rays primary,ao --against cgal", None, "", lambda rows:
      values(rows, "rays") == {"primary", "ao", "edges"} and right(rows, contender="raylanes")),
     ("trace hall --against scene,user --mode automatic,stream,call --size 24x16", None, "", lambda rows:
