@@ -14,6 +14,11 @@ void require_filterable(const TraceOptions& options) {
     throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
 }
 
+// The tree, if options are right. Usual ones need no rows of other kernels.
+TreeView tree_by(const TracedTree& tree, const TraceOptions& options) {
+  return is_usual_kept(options) ? tree.view : checked_traversal(tree, options).tree;
+}
+
 }  // namespace
 
 // options: null for the default ones.
@@ -25,7 +30,7 @@ Hit TriangleTree::closest_kept(const Ray& ray, const detail::Rejection<Hit>& rej
   require_filterable(by);
   if (by.counters != nullptr)
     return first_kept(rejection, by, [&](const TraceOptions& next) { return closest(ray, next); });
-  const TreeView tree = checked_traversal(traced(), by).tree;
+  const TreeView tree = tree_by(traced(), by);
   const KeptCall<float> call(rejection, by);
   const QuietFloats quiet;
   return kernels_of(checked_path(by.path)).queries.plain.kept.closest(tree, ray, call.asked);
@@ -38,7 +43,7 @@ bool TriangleTree::any_kept(const Ray& ray, const detail::Rejection<Hit>& reject
   require_filterable(by);
   by.after = {};  // of closest() only
   if (by.counters != nullptr) return static_cast<bool>(closest_kept(ray, rejection, &by));
-  const TreeView tree = checked_traversal(traced(), by).tree;
+  const TreeView tree = tree_by(traced(), by);
   const KeptCall<float> call(rejection, by);
   const QuietFloats quiet;
   return kernels_of(checked_path(by.path)).queries.plain.kept.any(tree, ray, call.asked);

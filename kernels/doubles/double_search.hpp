@@ -98,17 +98,12 @@ class DoubleLeaves {
   template <class Query>
   bool visit(TreeReference reference, Query& query) const {
     const LeafReference leaf = leaf_of(reference);
-    if (leaf.size > tree_width / 2)
-      return visit_rows<lanes_of_rows<tree_width>>(leaf, RowsOf<tree_width>(), query);
-    return visit_rows<lanes_of_rows<tree_width / 2>>(leaf, RowsOf<tree_width / 2>(), query);
+    const std::uint32_t first = DoubleTriangles::first_of(leaf);
+    if (leaf.size > tree_width / 2) return visit_rows<tree_width>(leaf, first, query);
+    return visit_rows<tree_width / 2>(leaf, first, query);
   }
 
  private:
-  template <std::uint32_t rows>
-  using RowsOf = std::integral_constant<std::uint32_t, rows>;
-  template <int rows>
-  static constexpr int lanes_of_rows = double_lanes < rows ? double_lanes : rows;
-
   // The ray as Exact::classify() and visit_filtered() read it.
   template <class V>
   struct PreparedNumbers {
@@ -123,11 +118,10 @@ class DoubleLeaves {
     double tmin;
   };
 
-  // rows: lanes of the leaf, a multiple of N.
-  template <int N, class Rows, class Query>
-  bool visit_rows(LeafReference leaf, Rows rows, Query& query) const {
+  template <int rows, class Query>
+  bool visit_rows(LeafReference leaf, std::uint32_t first, Query& query) const {
+    constexpr int N = double_lanes < rows ? double_lanes : rows;
     using V = Doubles<N>;
-    const std::uint32_t first = DoubleTriangles::first_of(leaf);
     const double* const numbers = DoubleTriangles(tree_).numbers(first);
     const Prepared<V> prepared{{{V(origin_[0]), V(origin_[1]), V(origin_[2])},
                                 {V(direction_[0]), V(direction_[1]), V(direction_[2])},
@@ -142,10 +136,7 @@ class DoubleLeaves {
                         *const z = numbers + row_[2] * rows;
     for (int at = 0; at < size; at += N) {
       const auto load = [&](int k) {
-        return V::load((k % 3 == 0   ? x
-                        : k % 3 == 1 ? y
-                                     : z) +
-                       static_cast<std::uint32_t>(k / 3 * 3) * rows + at);
+        return V::load((k % 3 == 0 ? x : k % 3 == 1 ? y : z) + k / 3 * 3 * rows + at);
       };
       const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
       if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,

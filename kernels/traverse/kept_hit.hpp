@@ -63,14 +63,14 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
     }
     return beside > max_beside;
   }
+
+ private:
   // Asks about a hit that counts, and keeps it if it is not rejected.
   bool take(const HitOf<T>& hit) {
     if (asked.rejects != nullptr && asked.rejects(asked.function, hit)) return false;
     best = hit, this->end_at(hit.t);
     return true;
   }
-
- private:
   static int nearest_of(std::uint32_t lanes, const T* t_lo) {
     int nearest = std::countr_zero(lanes);
     for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1)
