@@ -8,7 +8,7 @@
 
 namespace raylanes::testing {
 
-// In the box of the mesh, and beside it by up to a quarter.
+// Points lie in the box of the mesh, or beside it by up to a quarter of its size.
 inline std::vector<Double3> points_around(const oracle::DoubleMesh& mesh, std::size_t count,
                                           std::uint64_t seed) {
   Random random(seed);
