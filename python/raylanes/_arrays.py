@@ -129,16 +129,21 @@ def vertices_of(name, values, real):
 
 def changes(values, rounded):
     """Whether a finite number of `values` is another one in `rounded`, which has the same shape."""
-    if rounded.dtype != np.float32 or (values.dtype.kind == "f" and values.itemsize <= 4):
+    if values.dtype.kind == "f":
+        return values.itemsize > rounded.itemsize and bool(((values != rounded) & np.isfinite(values)).any())
+    bits = np.finfo(rounded.dtype).nmant + 1
+    if 8 * values.itemsize <= bits:
         return False
-    exact = np.asarray(values, np.float64)
-    return bool(((exact != rounded) & np.isfinite(exact)).any())
+    # A float holds an integer from its highest bit to its lowest one, if these are at most so many bits.
+    size = values.astype(np.uint64)
+    size = np.where(values < 0, np.negative(size), size)
+    return bool((size >> np.uint64(bits) >= (size & np.negative(size)))[size != 0].any())
 
 
 def require_kept(name, given, kept, advice):
-    """Refuses numbers that float32 would round without being asked to."""
+    """Refuses numbers that the type of `kept` would round without being asked to."""
     if changes(given.reshape(kept.shape), kept):
-        raise ValueError(f"{name}: float32 does not hold these {given.dtype} numbers; {advice}")
+        raise ValueError(f"{name}: {kept.dtype} does not hold these {given.dtype} numbers; {advice}")
 
 
 def equal_corners(vertices, faces):
@@ -160,12 +165,23 @@ def stand_ins(name, values):
     """(n, 3) float32 that are equal where the vertices are, and not finite where these are not."""
     array = np.asarray(values)
     real = numbers_for(None, numbers(name, array)).real
-    exact = vertices_of(name, array, real)
+    kept = vertices_of(name, array, real)
     if real == np.float32:
-        return exact
-    position = positions_of(exact)
+        return kept
+    position = positions_of(array.reshape(kept.shape))
     made = np.stack([position % 4096, position // 4096 % 4096, position // 4096**2], axis=1).astype(np.float32)
-    return np.where(np.isfinite(exact), made, exact).astype(np.float32)
+    return np.where(np.isfinite(kept), made, kept).astype(np.float32)
+
+
+def volume_of(vertices, faces):
+    """The volume within a closed mesh: negative if its normals point inwards, 0 if rounding may have made the sign."""
+    if len(faces) == 0:
+        return 0.0
+    corners = np.asarray(vertices, np.float64)[faces]
+    a, b, c = np.moveaxis(corners - corners[0, 0], 1, 0)
+    terms = np.concatenate([a * np.roll(b, -1, 1) * np.roll(c, 1, 1), -a * np.roll(b, 1, 1) * np.roll(c, -1, 1)])
+    volume = float(terms.sum())
+    return volume / 6 if abs(volume) > 2**-20 * float(np.abs(terms).sum()) else 0.0
 
 
 def faces_of(values):

@@ -5,6 +5,11 @@ import numpy as np
 
 def parts_of(vertices, faces):
     """(vertices, faces) as they are given, or the parts of a mesh in place of both."""
+    for name, values in (("vertices", vertices), ("faces", faces)):
+        if _is_of_many(values):
+            raise TypeError(f"{name}: one mesh is needed, not a list of {len(values)}. Join them: concatenate all "
+                            "vertices, and all faces after adding to each the number of vertices before its mesh; or "
+                            "add each mesh to a raylanes.Scene")
     if faces is not None:
         return vertices, faces
     parts = _parts_of_mesh(vertices)
@@ -12,6 +17,15 @@ def parts_of(vertices, faces):
         raise TypeError("faces: give vertices and faces, or a mesh that has vertices and faces, not only "
                         f"{type(vertices).__name__}")
     return parts
+
+
+def _is_of_many(values):
+    """Whether a list holds meshes, or the arrays of several ones."""
+    if not isinstance(values, (list, tuple)) or not values:
+        return False
+    first = values[0]
+    rows = isinstance(first, (list, tuple)) and first and isinstance(first[0], (list, tuple, np.ndarray))
+    return bool(rows) or getattr(first, "ndim", None) == 2 or is_mesh(first)
 
 
 def is_mesh(mesh):

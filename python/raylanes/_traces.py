@@ -41,16 +41,20 @@ def shadows_from(numbers, origin, points, ends, out, active, ask):
     """Whether anything lies on segments: ask(origin, rows of points, bytes to write, ends, bits of active points)."""
     start, end = ends
     ends = real("start", start, numbers.real), real("end", end, numbers.real)
-    return _shadows_of("origin", numbers, origin, points, ends, out, active, ask)
+    return _shadows_of("origin", "origins=A, directions=B - A, tmax=1", numbers, origin, points, ends, out, active, ask)
 
 
 def shadows_towards(numbers, direction, points, out, active, ask):
     """Whether anything lies in a direction: ask() as in shadows_from(), without ends."""
-    return _shadows_of("direction", numbers, direction, points, None, out, active, ask)
+    return _shadows_of("direction", "origins=points, directions=D", numbers, direction, points, None, out, active, ask)
 
 
-def _shadows_of(name, numbers, light, points, ends, out, active, ask):
+def _shadows_of(name, instead, numbers, light, points, ends, out, active, ask):
     given, shape = rows("points", points, 3, numbers.real)
+    size = np.size(light)
+    if size > 3 and np.shape(light)[-1] == 3:
+        raise ValueError(f"{name}: one is needed, three numbers, not {size // 3} of them; with one for each point call "
+                         f"occluded({instead})")
     light = vertices_of(name, np.reshape(light, (1, -1)), numbers.real)[0]
     answer = Answer(out, shape, np.dtype(bool), (given,), None if active is None else False)
     ask(light, given, answer.rows.view(np.uint8), ends, packed(active, shape))

@@ -341,7 +341,8 @@ def _mesh_of_floats(vertices, faces):
 def _part_of(tree):
     """The native tree of a geometry."""
     if not isinstance(tree, (Bvh, SphereTree)):
-        raise TypeError(f"tree: a Bvh, a SphereTree or a mesh is needed, not {type(tree).__name__}")
+        each = ": call add() for each part" if isinstance(tree, (list, tuple)) else ""
+        raise TypeError(f"tree: a Bvh, a SphereTree or a mesh is needed, not {type(tree).__name__}{each}")
     if isinstance(tree._tree, _native.BvhD):
         raise ValueError("tree: a scene has float32, this Bvh has float64; give it a Bvh made with dtype=numpy.float32")
     return tree._tree

@@ -25,10 +25,11 @@ class _Tree(RayQueries, PointQueries, StoredTree):
         if left_out:
             self._look_for_lost(given, vertices, faces)
             lost = self._rounded_away
+            kept = not changes(np.asarray(given), np.asarray(given, np.float64))
             warn(f"{left_out} of {len(faces)} triangles have two equal corners"
-                 + (f", {lost} of them by rounding to float32," if lost else "")
+                 + (f", {lost} of them by rounding to {vertices.dtype}," if lost else "")
                  + " and are left out: nothing hits them"
-                 + ("; a Bvh with dtype=numpy.float64 keeps those" if lost else ""))
+                 + ("; a Bvh with dtype=numpy.float64 keeps those" if lost and kept else ""))
 
     def _look_for_lost(self, given, vertices, faces):
         """Counts triangles whose corners became equal by rounding."""
@@ -36,7 +37,7 @@ class _Tree(RayQueries, PointQueries, StoredTree):
         self._rounded_away = 0
         if len(faces) and changes(given, vertices):
             lost = equal_corners(vertices, faces)
-            self._rounded_away = max(0, lost and lost - equal_corners(given.astype(np.float64), faces))
+            self._rounded_away = max(0, lost and lost - equal_corners(given.reshape(vertices.shape), faces))
 
 
 class Bvh(_Tree):
@@ -94,6 +95,7 @@ class Bvh(_Tree):
     -----
     MeshWarning
         If triangles have two equal corners, also by rounding to float32: they are left out, and nothing hits them.
+        If float64 does not hold the vertices, such as integers beyond 2^53, and dtype is not given.
 
     Examples
     --------
@@ -115,10 +117,17 @@ class Bvh(_Tree):
         if kind is DOUBLES and builder == "spatial_splits":
             raise ValueError('builder: "spatial_splits" is for trees of dtype=numpy.float32, this one has float64')
         of_tree = vertices_of("vertices", given, kind.real)
+        self._warn_of_rounding(given, of_tree)
         native = _native.Bvh if kind is FLOATS else _native.BvhD
         super().__init__(native(of_tree, faces, word("builder", builder), threads_of(threads),
                                 flag("optimize", optimize), real("rays", rays, np.float64),
                                 function("progress", progress)), given, of_tree, faces)
+
+    def _warn_of_rounding(self, given, of_tree):
+        """Warns if integers or long doubles are rounded to float64, and nobody asked for that."""
+        if not self._rounds and of_tree.dtype == np.float64 and changes(given.reshape(of_tree.shape), of_tree):
+            warn(f"vertices: float64 does not hold these {given.dtype} numbers, and rounds them to nearest. Subtract a "
+                 "point near the mesh first, or pass dtype=numpy.float64 if rounding is welcome")
 
     @classmethod
     def _native_of(cls, source):
@@ -151,8 +160,9 @@ class Bvh(_Tree):
         vertices, faces = parts_of(vertices, faces)
         faces, given = faces_of(faces), numbers("vertices", vertices)
         of_tree = vertices_of("vertices", given, self.dtype)
-        if not self._rounds:
+        if not self._rounds and self.dtype == np.float32:
             require_kept("vertices", given, of_tree, "the tree has float32: give it vertices of float32")
+        self._warn_of_rounding(given, of_tree)
         self._tree.refit(of_tree, faces, threads_of(threads))
         self._look_for_lost(given, of_tree, faces)
 

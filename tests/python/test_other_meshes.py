@@ -62,6 +62,29 @@ def test_what_is_no_mesh_is_refused():
             raylanes.Bvh(wrong)
 
 
+def test_lists_of_meshes_are_refused_with_what_to_do(other):
+    join = "one mesh is needed, not a list of 2. Join them: concatenate .* or add each mesh to a raylanes.Scene$"
+    for given in [([VERTICES, VERTICES[:3]], [FACES, FACES[:1]]), ([VERTICES.tolist()] * 2, FACES), ([other, other],)]:
+        for call in (raylanes.Bvh, raylanes.KdTree, raylanes.closed_report, raylanes.Bvh(VERTICES, FACES).refit):
+            with pytest.raises(TypeError, match="^vertices: " + join):
+                call(*given)
+    with pytest.raises(TypeError, match="^faces: " + join):
+        raylanes.Bvh(VERTICES, [FACES, FACES])
+    with pytest.raises(TypeError, match="not list: call add.. for each part$"):
+        raylanes.Scene().add([raylanes.Bvh(VERTICES, FACES, dtype=np.float32)])
+
+
+def test_pairs_of_points_are_refused_with_what_to_do():
+    scene, points = raylanes.Scene(), np.zeros((5, 3))
+    scene.update()
+    pairs = r"^origin: one .* not 5 .* occluded\(origins=A, directions=B - A, tmax=1\)$"
+    for asked in (raylanes.Bvh(VERTICES, FACES), scene, raylanes.SphereTree([[0, 0, 0]], 1)):
+        with pytest.raises(ValueError, match=pairs):
+            asked.occluded_from(points, points)
+        with pytest.raises(ValueError, match=r"^direction: .* not 5 .* occluded\(origins=points, directions=D\)$"):
+            asked.occluded_towards(points, points)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_hits_have_weights_normals_and_values_of_corners(other, dtype):
     hits = raylanes.Bvh(other, dtype=dtype).closest(DOWN)
