@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
@@ -89,6 +91,26 @@ class Edges {
   ClosedReport report_;
 };
 
+// The volume of a closed mesh, as tetrahedra with a corner of the mesh.
+template <class T>
+double volume_of(const VertexRecords<T>& vertices, const IndexView& triangles) {
+  double volume = 0, size = 0;
+  const auto origin = triangles.count == 0 ? std::array<T, 3>() : vertices[triangles[0][0]];
+  for (std::size_t i = 0; i < triangles.count; ++i) {
+    double v[3][3];
+    for (std::size_t k = 0; k < 9; ++k)
+      v[k / 3][k % 3] =
+          static_cast<double>(vertices[triangles[i][k / 3]][k % 3]) - static_cast<double>(origin[k % 3]);
+    for (std::size_t x = 0; x < 3; ++x) {
+      const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+      const double p = v[0][x] * v[1][y] * v[2][z], q = v[0][x] * v[1][z] * v[2][y];
+      volume += p - q, size += std::abs(p) + std::abs(q);
+    }
+  }
+  // Less than 2^30 triangles: 2^33 roundings, each by at most 2^-53 of the sum of sizes.
+  return std::abs(volume) > 0x1p-20 * size ? volume / 6 : 0;
+}
+
 template <class T>
 ClosedReport report_of(const VertexRecords<T>& vertices, const IndexView& triangles, std::size_t max_listed,
                        const Progress* progress) {
@@ -98,7 +120,9 @@ ClosedReport report_of(const VertexRecords<T>& vertices, const IndexView& triang
     throw std::invalid_argument("closed_report: " + std::to_string(vertices.count) + " vertices and " +
                                 std::to_string(triangles.count) +
                                 " triangles, allowed are less than 2^32 and 2^30");
-  return Edges(vertices, triangles, progress).report(max_listed);
+  ClosedReport report = Edges(vertices, triangles, progress).report(max_listed);
+  if (report.has_winding_numbers()) report.volume = volume_of(vertices, triangles);
+  return report;
 }
 
 }  // namespace

@@ -46,6 +46,9 @@ struct ClosedReport {
   /// if the copies have the same direction.
   std::size_t doubled = 0;
   std::vector<FaultyEdge> first;  ///< the first faulty edges, in the order of triangles
+  /// The volume within the mesh if has_winding_numbers(), by sums of doubles; negative if normals point inwards. 0 if
+  /// rounding may have made its sign.
+  double volume = 0;
 
   /// Returns whether each edge has two triangles, in opposite directions. An empty mesh is closed.
   bool is_closed() const { return open == 0 && inconsistent == 0 && shared == 0; }
@@ -53,6 +56,9 @@ struct ClosedReport {
   bool has_parity() const { return open == 0; }
   /// Returns whether InsideRule::nonzero is well defined: it does not depend on the direction of rays.
   bool has_winding_numbers() const { return open == 0 && inconsistent == 0; }
+  /// Returns whether the mesh bounds a solid, but its normals point inwards: InsideRule::winding finds no point inside
+  /// then, and rays enter the solid at Facing::back.
+  bool is_inside_out() const { return volume < 0; }
 };
 
 /// Examines all edges of a mesh, and lists the first `max_listed` faulty ones.

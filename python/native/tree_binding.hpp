@@ -25,6 +25,7 @@ struct SharedTree {
   std::shared_ptr<TreeOf<T>> state;
   std::size_t left_out = 0;       // triangles that the build left out
   bool looked_for_holes = false;  // see found_holes()
+  bool looked_for_sides = false;  // see found_inside_out()
 };
 
 template <class Tree>

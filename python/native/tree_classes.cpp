@@ -68,6 +68,7 @@ auto bind_tree(py::module_& module, const char* name) {
                [](const py::object& self, const py::object&) { return py::type::of(self)(self); })
           .def("left_out", [](const Shared& shared) { return to_python(shared.left_out); })
           .def("found_holes", found_holes<Tree>)
+          .def("found_inside_out", found_inside_out<Tree>)
           .def("nbytes", [](const Shared& shared) {
             return to_python(query(shared, [](const Tree& tree) { return tree.bytes(); }));
           });

@@ -17,7 +17,7 @@ NumPy, no thread may write to an array while a call reads it.
 from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
                       double_crossing_dtype, double_hit_dtype, double_ray_dtype, double_stretch_dtype,
                       faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays, scene_hit_dtype,
-                      stand_ins as _stand_ins, stretch_dtype)
+                      stand_ins as _stand_ins, stretch_dtype, volume_of as _volume_of)
 from ._meshes import parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
@@ -69,6 +69,10 @@ def closed_report(vertices, faces=None, max_listed: int = 16) -> dict:
         is_closed, has_parity, has_winding_numbers : bool
             Whether each edge has two triangles in opposite directions; whether the rule "parity" of locate() is well
             defined; whether the rule "nonzero" is.
+        volume : float
+            The volume within the mesh, if has_winding_numbers; otherwise 0. Negative if normals point inwards.
+        is_inside_out : bool
+            Whether volume is negative: faces[:, ::-1] turns the mesh over.
 
     Examples
     --------
@@ -76,5 +80,7 @@ def closed_report(vertices, faces=None, max_listed: int = 16) -> dict:
     3
     """
     vertices, faces = _parts_of(vertices, faces)
-    return _closed_report(_stand_ins("vertices", vertices), _faces_of(faces),
-                          _count("max_listed", max_listed, 2**32 - 1))
+    faces = _faces_of(faces)
+    report = _closed_report(_stand_ins("vertices", vertices), faces, _count("max_listed", max_listed, 2**32 - 1))
+    volume = _volume_of(vertices, faces) if report["has_winding_numbers"] else 0.0
+    return {**report, "volume": volume, "is_inside_out": volume < 0}

@@ -99,7 +99,7 @@ def rays(origins: ArrayLike, directions: ArrayLike, tmin: ArrayLike = ..., tmax:
 _ClosedReport = TypedDict("_ClosedReport", {
     "edges": int, "open": int, "inconsistent": int, "shared": int, "degenerate": int, "doubled": int,
     "first": list[tuple[Literal["open", "inconsistent", "shared"], int, int, int]],
-    "is_closed": bool, "has_parity": bool, "has_winding_numbers": bool})
+    "is_closed": bool, "has_parity": bool, "has_winding_numbers": bool, "volume": float, "is_inside_out": bool})
 
 def closed_report(vertices: ArrayLike | _Mesh, faces: ArrayLike | None = ...,
                   max_listed: int = ...) -> _ClosedReport: ...

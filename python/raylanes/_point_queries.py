@@ -5,7 +5,7 @@ import numpy as np
 from ._answer import Answer
 from ._arrays import DOUBLES, FLOATS, no_primitive, packed, rows
 from ._scalars import function, real, threads_of, word
-from ._warn import warn
+from ._warn import warn, warn_of_sides
 from .hits import ClosestPoints
 from .paths import chosen
 
@@ -18,10 +18,12 @@ class PointQueries:
     """Queries of points over `self._tree`, which has `self._numbers`."""
 
     def _rule(self, rule):
-        """The name of a rule. Warns if parity is asked for, and the mesh is not closed."""
+        """The name of a rule. Warns if it is parity, and the mesh is not closed; or winding, and it is inside out."""
         if rule == "parity" and self._tree.found_holes():
             warn('the mesh is not closed: inside and outside by rule="parity" may be wrong near and behind holes. '
                  'rule="winding" is for such meshes; raylanes.closed_report() lists the open edges')
+        if rule == "winding":
+            warn_of_sides(self._tree, 'rule="winding" finds no point inside')
         return word("rule", rule)
 
     def locate(self, points, *, rule="parity", out=None, active=None, threads=0, progress=None):

@@ -6,6 +6,7 @@ from ._answer import Answer
 from ._arrays import count_dtype, given_rays, packed, ray_rows
 from ._scalars import function, threads_of, word
 from ._traces import filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards, skipped
+from ._warn import warn_of_sides
 from .hits import Crossings, Hits, Stretches
 from .paths import chosen
 
@@ -19,6 +20,12 @@ class RayQueries:
         made = np.empty(np.shape(primitive) + (3, 3), self._numbers.real)
         self._tree.corners(names, made.reshape(-1))
         return made.astype(np.float64)
+
+    def _sides(self, facing):
+        """The name of the sides that count. Warns if some count, and the mesh is inside out."""
+        if isinstance(facing, str) and facing in ("front", "back"):
+            warn_of_sides(self._tree, 'a ray enters the solid at "back" and leaves it at "front"')
+        return facing
 
     def _filter(self, filter):
         return filter_of(filter, Hits, self._numbers.hit)
@@ -89,7 +96,7 @@ class RayQueries:
         array([False])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, hits_behind(after, answer), self._filter(filter)))
 
@@ -121,7 +128,7 @@ class RayQueries:
         (array([2.5, inf], dtype=float32), array([False, False]))
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how("exact", "reproducible", mode, hint, facing, threads, progress, skipped(skip))
+        asked = how("exact", "reproducible", mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
             given, answer.rows, asked, bits, hits_behind(after, answer)))
 
@@ -148,7 +155,7 @@ class RayQueries:
         array([False,  True])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return shadows(self._numbers, rays, out, active,
                        lambda given, answers, bits: self._tree.occluded(
                            given, answers, asked, bits, self._filter(filter)))
@@ -190,7 +197,7 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(
                                 *given[:-1], asked, given[-1], self._filter(filter)))
@@ -221,7 +228,7 @@ class RayQueries:
         >>> tree.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return shadows_towards(self._numbers, direction, points, out, active,
                                lambda *given: self._tree.occluded_from(
                                    *given[:-1], asked, given[-1], self._filter(filter)))

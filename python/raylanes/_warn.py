@@ -21,3 +21,9 @@ def warn(text):
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_package):
         frame, level = frame.f_back, level + 1
     warnings.warn(text, MeshWarning, stacklevel=level)
+
+
+def warn_of_sides(tree, consequence):
+    """A MeshWarning, once a tree, if its mesh is closed and turned inside out."""
+    if tree.found_inside_out():
+        warn(f"the mesh is turned inside out, its normals point inwards: {consequence}. faces[:, ::-1] turns it over")

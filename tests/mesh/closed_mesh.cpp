@@ -138,6 +138,29 @@ TEST(ClosedMesh, counts_triangles_that_are_there_again) {
   EXPECT_EQ(report_of(leaf).doubled, 1u);
 }
 
+// Exact for these corners, near zero and far from it.
+TEST(ClosedMesh, has_a_volume_that_is_negative_inside_out) {
+  for (const double far : {0.0, 0x1p30}) {
+    Mesh mesh = tetrahedron();
+    std::vector<Double3> vertices;
+    for (const auto& [x, y, z] : mesh.vertices)
+      vertices.push_back({double(x) + far, double(y) - far, double(z)});
+    const double sixth = 1.0 / 6;
+    EXPECT_EQ(closed_report(vertices, mesh.triangles).volume, sixth);
+    EXPECT_FALSE(closed_report(vertices, mesh.triangles).is_inside_out());
+    for (Index3& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    EXPECT_EQ(closed_report(vertices, mesh.triangles).volume, -sixth);
+    EXPECT_TRUE(closed_report(vertices, mesh.triangles).is_inside_out());
+    EXPECT_EQ(report_of(mesh).volume, -sixth);
+    for (Double3& vertex : vertices) vertex[2] = far;
+    EXPECT_EQ(closed_report(vertices, mesh.triangles).volume, 0);
+    mesh.triangles.pop_back();
+    EXPECT_EQ(report_of(mesh).volume, 0);
+    EXPECT_FALSE(report_of(mesh).is_inside_out());
+  }
+  EXPECT_EQ(report_of(Mesh{}).volume, 0);
+}
+
 TEST(ClosedMesh, refuses_what_is_no_mesh) {
   Mesh mesh = tetrahedron();
   mesh.triangles[0][0] = 9;

@@ -74,3 +74,70 @@ def test_faces_that_are_doubled():
     assert found == {"parity": False, "nonzero": True, "winding": True}
     turned = np.concatenate([cube_faces, cube_faces[:, ::-1], cube_faces[:1]])
     assert raylanes.closed_report(cube_vertices, turned)["doubled"] == 13
+
+
+@pytest.mark.parametrize("kind", [*kinds, lambda vertices, faces: raylanes.Bvh(vertices, faces, dtype=np.float64)])
+def test_meshes_that_are_inside_out(kind):
+    """Each tree warns once, where winding numbers or sides of triangles decide."""
+    rays = raylanes.rays([[0, 0, 9]], [0, 0, -1])
+    calls = [lambda tree: tree.inside(centre, rule="winding"), lambda tree: tree.closest(rays, facing="back"),
+             lambda tree: tree.closest_crossing(rays, facing="front"), lambda tree: tree.occluded(rays, facing="back"),
+             lambda tree: tree.occluded_from([0, 0, 9], centre, facing="back")]
+    turned, one_turned = cube_faces[:, ::-1], np.concatenate([cube_faces[1:], cube_faces[:1, ::-1]])
+    for call in calls:
+        tree = kind(cube_vertices + np.float32(100), turned)
+        text, = warnings_of(lambda: call(tree))
+        assert text.startswith("the mesh is turned inside out") and "faces[:, ::-1]" in text
+        assert warnings_of(lambda: [each(tree) for each in calls]) == []
+        for good in (cube_faces, turned[1:], one_turned, turned[:0]):
+            assert warnings_of(lambda: call(kind(cube_vertices, good))) == []
+    tree = kind(cube_vertices, turned)
+    assert warnings_of(lambda: [tree.inside(centre), tree.closest(rays)]) == []
+
+
+def test_the_report_of_meshes_that_are_inside_out():
+    side = float(np.ptp(cube_vertices[:, 0]))
+    for vertices in (cube_vertices, cube_vertices.astype(np.float64) + 1e6):
+        good = raylanes.closed_report(vertices, cube_faces)
+        turned = raylanes.closed_report(vertices, cube_faces[:, ::-1])
+        assert good["volume"] == side**3 == -turned["volume"]
+        assert (good["is_inside_out"], turned["is_inside_out"], turned["is_closed"]) == (False, True, True)
+    flat = raylanes.closed_report(cube_vertices * np.float32([1, 1, 0]), cube_faces[:, ::-1])
+    assert (flat["volume"], flat["is_inside_out"]) == (0, False)
+    assert raylanes.closed_report(cube_vertices, cube_faces[1:, ::-1])["volume"] == 0
+
+
+@pytest.mark.parametrize("dtype", [np.int64, np.uint64, np.longdouble])
+def test_vertices_that_float64_does_not_hold(dtype):
+    far = (cube_vertices - cube_vertices.min(axis=0)).astype(dtype) + dtype(2**60)
+    if dtype is np.longdouble and np.finfo(dtype).nmant < 60:
+        pytest.skip("a long double is a double here")
+    odd = far.copy()
+    odd[0, 0] += dtype(1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        lost = raylanes.Bvh(odd, cube_faces)
+    assert lost.report()["rounded_away"] == len(cube_faces)
+    text = warnings_of(lambda: raylanes.Bvh(odd, cube_faces))[0]
+    assert text.startswith(f"vertices: float64 does not hold these {np.dtype(dtype)} numbers")
+    asked = warnings_of(lambda: raylanes.Bvh(odd, cube_faces, dtype=np.float64))
+    assert all("does not hold" not in text for text in asked)
+    near = (cube_vertices - cube_vertices.min(axis=0)).astype(dtype)
+    assert warnings_of(lambda: raylanes.Bvh(near * dtype(2**58), cube_faces)) == []
+    with pytest.raises(ValueError, match="^vertices: float32 does not hold"):
+        raylanes.KdTree(odd, cube_faces)
+    tree = raylanes.Bvh(near, cube_faces)
+    assert warnings_of(lambda: tree.refit(odd, cube_faces))
+    assert raylanes.closed_report(odd, cube_faces)["degenerate"] == 0
+
+
+def test_which_integers_floats_hold():
+    from raylanes._arrays import changes
+
+    for dtype in (np.int32, np.uint32, np.int64, np.uint64):
+        ends = np.iinfo(dtype)
+        for n in [0, 1, 2**24 - 1, 2**24, 2**24 + 1, ends.min, ends.min + 1, ends.max, 2**31 - 128, 2**53 + 1]:
+            if ends.min <= n <= ends.max:
+                for real in (np.float32, np.float64):
+                    given = np.array([0, n], dtype)
+                    assert changes(given, given.astype(real)) == (int(real(n)) != n), n

@@ -197,6 +197,7 @@ def native_calls():
     yield "_native.BvhD(data)", lambda: _native.BvhD(of_doubles).to_bytes()
     yield "_native.BvhD(read)", lambda: _native.BvhD(io.BytesIO(of_doubles).read).to_bytes()
     yield "_native.BvhD.found_holes", lambda: _native.BvhD(of_doubles).found_holes()
+    yield "_native.BvhD.found_inside_out", lambda: _native.BvhD(of_doubles).found_inside_out()
     yield "_native.reduce", lambda: tree.__reduce_ex__(4)[1]
     yield "_native.found_holes", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0, None).found_holes()
     yield "_native.report", lambda: (tree.report(), kd_tree.report())
