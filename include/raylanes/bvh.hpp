@@ -1,6 +1,7 @@
 // A bounding volume hierarchy: build it over a mesh, then query it.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <iosfwd>
 #include <memory>
@@ -41,6 +42,9 @@ class Bvh : public TriangleTree {
   /// does not exist, or the thread count is negative. Throws std::length_error if split triangles make more nodes or
   /// leaves than can be numbered.
   Bvh(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
+  /// Does not compile: BvhD is the tree over vertices of doubles.
+  template <detail::VerticesOfDoubles Doubles>
+  Bvh(const Doubles&, IndexView, const BuildOptions& = {}) = delete;  // vertices of doubles: use BvhD
   /// Builds the tree of a mesh. Throws as the constructor from views does.
   explicit Bvh(const Mesh& mesh, const BuildOptions& options = {});
   ~Bvh() override;
@@ -101,5 +105,12 @@ class Bvh : public TriangleTree {
 
   std::unique_ptr<struct BvhArrays> tree_;  // null: the empty tree
 };
+
+class BvhD;
+namespace detail {
+template <class Tree>
+concept TreeOfDoubles = std::same_as<Tree, BvhD> || std::same_as<Tree, std::shared_ptr<BvhD>> ||
+    std::same_as<Tree, std::shared_ptr<const BvhD>>;
+}  // namespace detail
 
 }  // namespace raylanes

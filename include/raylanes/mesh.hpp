@@ -141,6 +141,11 @@ struct VertexRecords {
 /// A view of vertices of floats.
 using VertexView = VertexRecords<float>;
 
+namespace detail {
+template <class R>
+concept VerticesOfDoubles = RangeOf<R, double> || std::same_as<R, VertexRecords<double>>;
+}  // namespace detail
+
 /// A view of triangles: three 32-bit indices, signed or unsigned, every `stride` bytes, of any alignment. It owns
 /// nothing.
 /// It converts from the ranges that VertexView converts from, with indices in place of floats.

@@ -25,6 +25,10 @@ struct Transform {
 
 /// A view of hits in scenes to write, as HitView is of hits in trees.
 using SceneHitView = HitRecords<SceneHit>;
+namespace detail {
+template <class Hits>
+concept HitsOfTrees = std::convertible_to<Hits, HitView> && !std::convertible_to<Hits, SceneHitView>;
+}  // namespace detail
 
 /// A function that rejects hits in scenes, as HitFilter does in trees.
 using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const SceneHit> hits,
@@ -109,6 +113,9 @@ class Scene {
   std::uint32_t add(const Mesh& mesh, const BuildOptions& options = {}) {
     return add(mesh.vertices, mesh.triangles, options);
   }
+  /// Does not compile: scenes have floats, as Bvh has.
+  template <detail::TreeOfDoubles Tree>
+  std::uint32_t add(const Tree&) = delete;  // of doubles; a scene has floats: add a Bvh
   /// Adds spheres; returns the index of the geometry.
   std::uint32_t add(SphereTree spheres);
   /// Adds a tree that the scene shares with its other owners; nobody may change it until the scene no longer has it.
@@ -206,6 +213,9 @@ class Scene {
   /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
                std::uint32_t mask = ~0u) const;
+  /// Does not compile: hits in scenes are of the type SceneHit, as they name an instance.
+  template <class Rays, detail::HitsOfTrees Hits>
+  void closest(const Rays&, Hits&&, const TraceOptions& = {}) const = delete;  // a scene writes SceneHit
   /// Returns the nearest hit at which the ray passes through the surface of an instance, or a miss, as
   /// TriangleTree::closest_crossing() does in the space of each instance: sides sum over the triangles of one instance.
   /// Throws what closest() throws, and std::invalid_argument for another test than exact, and if a geometry does not
