@@ -1,7 +1,13 @@
 #include "stream.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "call.hpp"
 
 namespace raylanes::c {
 
@@ -37,6 +43,29 @@ BufferInput::pos_type BufferInput::seekoff(off_type offset, std::ios_base::seekd
 
 BufferInput::pos_type BufferInput::seekpos(pos_type position, std::ios_base::openmode mode) {
   return seekoff(position, std::ios_base::beg, mode);
+}
+
+template <class Stream>
+Stream opened(const char* name) {
+  require_pointer("file", name);
+  try {
+    errno = 0;
+    Stream stream(std::filesystem::path(reinterpret_cast<const char8_t*>(name)), std::ios::binary);
+    if (stream) return stream;
+  } catch (const std::system_error&) {  // Windows converts names
+    refuse_named(name, "the name is not UTF-8");
+  }
+  refuse_named(name, errno == 0 ? "it cannot be opened" : std::generic_category().message(errno).c_str());
+}
+template std::ifstream opened(const char*);
+template std::ofstream opened(const char*);
+
+void refuse_named(const char* name, const char* cause) {
+  std::string shown = name;
+  if (shown.size() > 255) shown.replace(120, shown.size() - 240, "...");
+  for (char& c : shown)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
+  throw std::runtime_error("tree file \"" + shown + "\": " + cause);
 }
 
 }  // namespace raylanes::c

@@ -1,8 +1,10 @@
-// Streams over the caller's memory, for trees that are saved and loaded.
+// Streams over the caller's memory and files, for trees that are saved and loaded.
 #pragma once
 
 #include <cstddef>
+#include <stdexcept>
 #include <streambuf>
+#include <system_error>
 
 namespace raylanes::c {
 
@@ -31,5 +33,24 @@ class BufferInput : public std::streambuf {
   pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode mode) override;
   pos_type seekpos(pos_type position, std::ios_base::openmode mode) override;
 };
+
+// Opens a file, whose name is UTF-8 on every system. Throws std::runtime_error that names the file and the cause.
+template <class Stream>
+Stream opened(const char* name);
+// Throws std::runtime_error: what is wrong with a file.
+[[noreturn]] void refuse_named(const char* name, const char* cause);
+
+// Returns use(stream) of a file. Its std::runtime_error gets the name of the file.
+template <class Stream, class Use>
+auto with_file(const char* name, const Use& use) {
+  Stream stream = opened<Stream>(name);
+  try {
+    return use(stream);
+  } catch (const std::system_error&) {  // also a std::runtime_error
+    throw;
+  } catch (const std::runtime_error& error) {
+    refuse_named(name, error.what());
+  }
+}
 
 }  // namespace raylanes::c

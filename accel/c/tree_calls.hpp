@@ -4,7 +4,6 @@
 //   RAYLANES_RECORD(name)  a record: raylanes_hit
 //   RAYLANES_OPTIONS(name) a type of C++: TraceOptions
 //   RAYLANES_NUMBERS       a namespace in raylanes::c with the types Number and Tree: float and Bvh
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <ostream>
@@ -59,12 +58,6 @@ PointOf<Number> point_of(const char* what, const Number* numbers) {
   PointOf<Number> point;
   std::memcpy(&point, numbers, sizeof point);
   return point;
-}
-
-// The name of a file in UTF-8, on every system.
-std::filesystem::path file_of(const char* name) {
-  require_pointer("file", name);
-  return reinterpret_cast<const char8_t*>(name);
 }
 
 RAYLANES_HANDLE* handle_of(Tree tree) {
@@ -145,8 +138,7 @@ raylanes_status RAYLANES_CALL(save)(const RAYLANES_HANDLE* tree, void* buffer, s
 raylanes_status RAYLANES_CALL(save_file)(const RAYLANES_HANDLE* tree, const char* file) {
   return status_of([&] {
     const Tree& saved = tree_of(tree);
-    std::ofstream stream(file_of(file), std::ios::binary);
-    saved.save(stream);
+    with_file<std::ofstream>(file, [&](std::ostream& stream) { saved.save(stream); });
   });
 }
 
@@ -164,8 +156,8 @@ raylanes_status RAYLANES_CALL(load)(RAYLANES_HANDLE** tree, const void* bytes, s
 raylanes_status RAYLANES_CALL(load_file)(RAYLANES_HANDLE** tree, const char* file) {
   return status_of([&] {
     make("tree", tree, [&] {
-      std::ifstream stream(file_of(file), std::ios::binary);
-      return handle_of(Tree::load(stream));
+      return with_file<std::ifstream>(file,
+                                      [](std::istream& stream) { return handle_of(Tree::load(stream)); });
     });
   });
 }

@@ -98,7 +98,8 @@ RAYLANES_STATUS raylanes_bvhd_save_file(const raylanes_bvhd* tree, const char* f
 RAYLANES_STATUS raylanes_bvh_load(raylanes_bvh** tree, const void* bytes, size_t size);
 /// Makes the tree of doubles that was saved as these bytes.
 RAYLANES_STATUS raylanes_bvhd_load(raylanes_bvhd** tree, const void* bytes, size_t size);
-/// Makes the tree that was saved to a file, whose name is UTF-8.
+/// Makes the tree that was saved to a file, whose name is UTF-8. If this returns RAYLANES_BAD_FILE,
+/// raylanes_last_message() has the name and the cause, also if the name is not UTF-8.
 RAYLANES_STATUS raylanes_bvh_load_file(raylanes_bvh** tree, const char* file);
 /// Makes the tree of doubles that was saved to a file.
 RAYLANES_STATUS raylanes_bvhd_load_file(raylanes_bvhd** tree, const char* file);

@@ -50,8 +50,21 @@ static void test_files(const TREE* tree) {
   bytes[size / 2] ^= 1;
   FAILS(CALL(load)(&loaded, bytes, size), RAYLANES_BAD_FILE, "tree file");
   FAILS(CALL(load)(&loaded, NULL, 0), RAYLANES_BAD_FILE, "tree file");
-  FAILS(CALL(load_file)(&loaded, file_named("a.tree")), RAYLANES_BAD_FILE, "tree file");
-  FAILS(CALL(save_file)(tree, "no such folder/tree"), RAYLANES_BAD_FILE, "tree file");
+  FAILS(CALL(load_file)(&loaded, file_named("a.tree")), RAYLANES_BAD_FILE, "a.tree\": No such file");
+  FAILS(CALL(save_file)(tree, "no such folder/tree"), RAYLANES_BAD_FILE,
+        "tree file \"no such folder/tree\": No such");
+  opened = fopen(file_named("cut"), "wb");
+  fputs("no tree", opened);
+  fclose(opened);
+  FAILS(CALL(load_file)(&loaded, file_named("cut")), RAYLANES_BAD_FILE, "cut\": tree file: ");
+  EXPECT(remove(file_named("cut")) == 0);
+  /* Names that are not UTF-8 are those of files but on Windows. Lines and long names leave room for the cause. */
+  FAILS(CALL(load_file)(&loaded, "no\nsuch \xff\xfe file"), RAYLANES_BAD_FILE,
+        "tree file \"no?such \xff\xfe file\": ");
+  memset(bytes, 'x', size);
+  bytes[size < 2000 ? size - 1 : 2000] = 0;
+  FAILS(CALL(load_file)(&loaded, (const char*)bytes), RAYLANES_BAD_FILE, "xxx...xxx");
+  EXPECT(strstr(raylanes_last_message(), "\": ") != NULL);
   REFUSED(CALL(load)(NULL, bytes, size), "tree");
   REFUSED(CALL(load)(&loaded, NULL, size), "bytes");
   REFUSED(CALL(load)(&loaded, bytes, SIZE_MAX), "bytes");
