@@ -42,15 +42,23 @@ inline void write_png(const std::string& file, std::size_t width, const std::vec
     throw std::runtime_error(file + ": " + image.message);
 }
 
-// Writes a number into a picture of three channels, in black: digits of three by five dots, each of `scale`² pixels.
-inline void write_number(std::vector<float>& levels, std::size_t width, std::size_t left, std::size_t top,
-                         std::size_t scale, const std::string& number) {
+// Writes a text of digits, small letters and -., into a picture of three channels, in black: characters of three by
+// five dots, each of `scale`² pixels.
+inline void write_text(std::vector<float>& levels, std::size_t width, std::size_t left, std::size_t top,
+                       std::size_t scale, const std::string& text) {
   // A row of three dots an octal digit, the top row first.
   constexpr unsigned digits[] = {075557, 026227, 071747, 071717, 055711,
                                  074717, 074757, 071122, 075757, 075717};
-  for (std::size_t k = 0; k < number.size(); ++k) {
-    const char c = number[k];
-    const unsigned dots = c == '-' ? 000700 : c == '.' ? 000002 : digits[c - '0'];
+  constexpr unsigned letters[] = {025755, 065656, 034443, 065556, 074647, 074644, 034553, 055755, 072227,
+                                  011152, 055655, 044447, 057755, 065555, 025552, 065644, 025563, 065655,
+                                  034216, 072222, 055557, 055552, 055775, 055255, 055222, 071247};
+  const auto dots_of = [&](char c) {
+    if (c >= 'a' && c <= 'z') return letters[c - 'a'];
+    if (c >= '0' && c <= '9') return digits[c - '0'];
+    return c == '-' ? 000700u : c == '.' ? 000002u : c == ',' ? 000024u : 0u;
+  };
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const unsigned dots = dots_of(text[k]);
     for (std::size_t i = 0; i < 15 * scale * scale; ++i) {
       const std::size_t x = i % (3 * scale), y = i / (3 * scale);
       if ((dots >> (14 - y / scale * 3 - x / scale) & 1) == 0) continue;
@@ -58,6 +66,13 @@ inline void write_number(std::vector<float>& levels, std::size_t width, std::siz
       std::fill_n(levels.begin() + static_cast<std::ptrdiff_t>(3 * pixel), 3, 0.0f);
     }
   }
+}
+
+// The same grey levels in three channels.
+inline std::vector<float> in_colour(const std::vector<float>& levels) {
+  std::vector<float> colours;
+  for (const float level : levels) colours.insert(colours.end(), 3, level);
+  return colours;
 }
 
 // Half as wide and high: the mean of each four neighbours, so that edges are smooth.

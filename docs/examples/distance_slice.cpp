@@ -19,13 +19,18 @@ int main(int, char** arguments) {
   std::vector<float> distances(points.size());
   bvh.signed_distances(points, distances, {.threads = 0});
 
-  // Orange inside, blue outside, a line every tenth of a unit, the surface itself black.
+  // Orange inside, blue outside, a line every tenth of a unit, where two pixels differ, and the surface itself black.
   std::vector<float> colours;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const float distance = std::abs(distances[i]);
-    const float stripe = std::abs(10 * distance - std::round(10 * distance)) < 0.04f ? 0.75f : 1.0f;
+    const auto tenths = [&](std::size_t at) { return std::floor(10 * distances[at]); };
+    const std::size_t right = i % width + 1 < width ? i + 1 : i,
+                      below = i + width < points.size() ? i + width : i;
+    const float least = std::min({tenths(i), tenths(right), tenths(below)});
+    const bool line = least < std::max({tenths(i), tenths(right), tenths(below)});
     const float shade =
-        distance < 0.005f ? 0.0f : stripe * (1 - 0.05f * std::min(10.0f, std::floor(10 * distance)));
+        line && least == -1
+            ? 0.0f
+            : (line ? 0.7f : 1.0f) * (1 - 0.05f * std::min(10.0f, std::floor(10 * std::abs(distances[i]))));
     const Float3 colour = distances[i] <= 0 ? Float3{1, 0.7f, 0.4f} : Float3{0.6f, 0.8f, 1};
     for (const float level : colour) colours.push_back(level * shade);
   }
@@ -36,7 +41,7 @@ int main(int, char** arguments) {
               here = static_cast<int>(std::floor(5 * row[x]));
     if (before == here || x < next) continue;
     const int fifths = std::max(before, here), tenths = 2 * std::abs(fifths);
-    write_number(colours, width, x + 4, 195, 2, (fifths < 0 ? "-0." : "0.") + std::to_string(tenths));
+    write_text(colours, width, x + 4, 195, 2, (fifths < 0 ? "-0." : "0.") + std::to_string(tenths));
     next = x + 45;
   }
   write_png(std::string(arguments[1]) + "/distance_slice.png", width, colours, 3);

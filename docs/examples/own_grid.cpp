@@ -2,30 +2,27 @@
 #include "common.hpp"
 
 using namespace example;
-constexpr std::size_t side = 16, each = 24;  // tiles along x and y, and spheres in one
-constexpr float size = 4.0f / side, radius = 0.05f;
-
+constexpr std::size_t side = 16, each = 16;  // tiles along x and y, and spheres in one
+constexpr float radius = 0.03f;
 struct Tiles {
   std::vector<float> lo[3]{}, hi[3]{}, centre[3]{}, squared_radius;  // spheres lie tile after tile
 };
 
 Tiles make_tiles() {
+  const auto place = [](std::size_t n) { return (static_cast<float>(n) + 0.5f) / side - 2; };
   Tiles made{.squared_radius = std::vector<float>(side * side * each, radius * radius)};
   for (std::size_t i = 0; i < side * side * each; ++i) {
-    const std::size_t j = i % each;
-    const float x = (static_cast<float>(i / each % side) + static_cast<float>(j % 5) / 5) * size - 2;
-    const float y = (static_cast<float>(i / each / side) + static_cast<float>(j) / each) * size - 2;
+    const float x = place(i / each % side * 4 + i % 4), y = place(i / each / side * 4 + i % each / 4);
     const float centre[] = {x, y, 0.3f * std::sin(4 * x) * std::cos(3 * y + x) - 0.3f};
     for (std::size_t k = 0; k < 3; ++k) {
       made.centre[k].push_back(centre[k]);
-      if (j == 0) made.lo[k].push_back(2), made.hi[k].push_back(-2);
+      if (i % each == 0) made.lo[k].push_back(2), made.hi[k].push_back(-2);
       made.lo[k].back() = std::min(made.lo[k].back(), centre[k] - 1.01f * radius);
       made.hi[k].back() = std::max(made.hi[k].back(), centre[k] + 1.01f * radius);
     }
   }
   return made;
 }
-
 // Tiles in the order in which the ray enters them, until the best hit is nearer than the next.
 raylanes::Hit closest(const Tiles& tiles, const raylanes::Ray& ray) {
   const auto &lo = tiles.lo, &hi = tiles.hi, &c = tiles.centre;
@@ -53,8 +50,11 @@ int main(int, char** arguments) {
   std::vector<float> levels;
   for (const raylanes::Ray& ray : camera_rays(1600, 1000)) {
     const raylanes::Hit hit = closest(tiles, ray);
-    const float shade = (hit.primitive / each + hit.primitive / each / side) % 2 == 0 ? 0.8f : 1.0f;
-    levels.push_back(hit ? shade * (1.5f - 0.2f * hit.t) : 0.95f);
+    const std::size_t i = hit ? hit.primitive : 0, tile = i / each + i / each / side;
+    Float3 normal = add(ray.origin, ray.direction, hit.t);
+    for (std::size_t k = 0; k < 3; ++k) normal[k] -= tiles.centre[k][i];
+    const float light = 0.35f + 0.65f * std::max(0.0f, dot(unit(normal), unit({1, -1, 2})));
+    levels.push_back(hit ? light * (tile % 2 == 0 ? 0.7f : 0.9f) : 0.95f);
   }
   write_png(std::string(arguments[1]) + "/own_grid.png", 800, halved(levels, 1600));
 }

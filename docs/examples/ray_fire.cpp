@@ -46,11 +46,14 @@ int main(int, char** arguments) {
     corners.push_back({east, north, static_cast<double>(z)});
     rounded.push_back({static_cast<float>(east), static_cast<float>(north), z});
   }
-  constexpr std::size_t size = 160;
+  constexpr std::size_t size = 400;
   std::vector<std::vector<float>> rows(size);
   add_picture<raylanes::Bvh, raylanes::Ray>(raylanes::Bvh(rounded, ball.triangles), 5e6f, size, rows);
   add_picture<raylanes::BvhD, raylanes::RayD>(raylanes::BvhD(corners, ball.triangles), far, size, rows);
   std::vector<float> levels;
   for (const std::vector<float>& row : rows) levels.insert(levels.end(), row.begin(), row.end());
-  write_png(std::string(arguments[1]) + "/ray_fire.png", 2 * size, levels);
+  levels = in_colour(levels);
+  write_text(levels, 2 * size, 12, 12, 3, "floats");
+  write_text(levels, 2 * size, size + 12, 12, 3, "doubles");
+  write_png(std::string(arguments[1]) + "/ray_fire.png", 2 * size, levels, 3);
 }

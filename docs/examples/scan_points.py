@@ -28,11 +28,15 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", raylanes.MeshWarning)  # "not closed": that is the point here
     wrong = [tree.inside(points, rule=rule) != truth for rule in ("parity", "winding")]
 
-figure, axes = panels(*(f"{rule}: {part.sum()} of {len(points)} points wrong"
+figure, axes = panels(*(f"{rule}: {part.sum():,} of {len(points):,} points wrong"
                         for rule, part in zip(("parity", "winding number"), wrong)))
 middles = scan.mean(axis=1)
 for panel, part in zip(axes, wrong):
     panel.scatter(*middles[:, :2].T, c="lightgray", s=1, linewidths=0)
-    panel.scatter(*points[part, :2].T, c=points[part, 2], s=9, cmap="plasma", vmin=-1.3, vmax=1.3)
+    columns = part.reshape(28, 28, 28).sum(axis=2)  # points with the same x and y lie on each other
+    at_y, at_x = np.nonzero(columns)
+    drawn = panel.scatter(axis[at_x], axis[at_y], c=columns[at_y, at_x], s=24, marker="s", cmap="plasma_r", vmin=0,
+                          vmax=26)
     panel.set(xlim=(-1.4, 1.4), ylim=(-1.4, 1.4))
+figure.colorbar(drawn, ax=axes, shrink=0.75, label="wrong points behind each other")
 save(figure, "scan_points.png", *wrong)
