@@ -9,7 +9,7 @@ build_packages=(g++ meson ninja-build pkg-config libxsimd-dev libhwy-dev libtbb-
   libgmp-dev libpng-dev binutils python3)
 tool_packages=(libcli11-dev nlohmann-json3-dev libtinygltf-dev libcgal-dev libbenchmark-dev libembree-dev libsleef-dev
   python3-matplotlib)
-test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev)
+test_packages=(qemu-user cmake gappa python3-dev python3-numpy python3-pytest pybind11-dev libembree-dev embree-tools)
 # What only tests/run --all installs.
 all_test_packages=(python3-mpi4py openmpi-bin python3-distributed mypy debhelper dh-python lintian mkdocs doxygen
   python3-mesonpy python3-venv g++-aarch64-linux-gnu)

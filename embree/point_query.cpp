@@ -1,0 +1,215 @@
+// rtcPointQuery: a callback for each primitive near a point, which may shrink the radius.
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+#include "scene.hpp"
+
+namespace embree {
+namespace {
+
+using raylanes::Float3;
+
+// The space of a tree as seen by a query in the scene.
+struct Space {
+  double point[3];  // the query's point in this space
+  float scale = 1;  // lengths here of 1 in the scene, for similarities; 0 otherwise
+  Matrix to_scene;
+};
+Space scene_space(const RTCPointQuery& query) {
+  return {{query.x, query.y, query.z}, 1, {}};
+}
+Space instance_space(const Geometry& instance, const RTCPointQuery& query) {
+  Space space{{}, 0, instance.to_scene};
+  const double at[3] = {query.x, query.y, query.z};
+  instance.to_local.move_point(at, space.point);
+  double length[3], product[3];
+  for (int c = 0; c < 3; ++c) {
+    length[c] = product[c] = 0;
+    for (const auto& row : instance.to_local.row)
+      length[c] += row[c] * row[c], product[c] += row[c] * row[(c + 1) % 3];
+  }
+  const auto is_about = [&](double a, double b) { return std::abs(a - b) < 1e-5 * length[0]; };
+  bool is_similar = true;
+  for (int c = 0; c < 3; ++c)
+    is_similar = is_similar && is_about(length[c], length[0]) && is_about(product[c], 0);
+  if (is_similar) space.scale = static_cast<float>(std::sqrt(length[0]));
+  return space;
+}
+
+class Search {
+ public:
+  Search(RTCPointQuery& query, RTCPointQueryContext& context, RTCPointQueryFunction function, void* user)
+      : query_(query), context_(context), function_(function), user_(user) {}
+
+  bool has_changed() const { return has_changed_; }
+  void visit(const Built& built, const Space& space) {
+    visit_triangles(built, space);
+    visit_things(built, space);
+  }
+
+ private:
+  // A distance to a box is one to the box around it in the scene if the space is no similarity.
+  bool is_near(const Space& space, const Float3& lo, const Float3& hi, double* distance = nullptr) const {
+    double sum = 0;
+    const auto add = [&](double low, double high, double at) {
+      const double way = std::max({low - at, at - high, 0.0});
+      sum += way * way;
+    };
+    if (space.scale != 0) {
+      for (std::size_t k = 0; k < 3; ++k)
+        add(static_cast<double>(lo[k]), static_cast<double>(hi[k]), space.point[k]);
+      sum /= static_cast<double>(space.scale) * static_cast<double>(space.scale);
+    } else {
+      const double at[3] = {query_.x, query_.y, query_.z};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double(&row)[4] = space.to_scene.row[i];
+        double low = row[3], high = row[3];
+        for (std::size_t j = 0; j < 3; ++j) {
+          const double a = row[j] * static_cast<double>(lo[j]), b = row[j] * static_cast<double>(hi[j]);
+          low += std::min(a, b), high += std::max(a, b);
+        }
+        add(low, high, at[i]);
+      }
+    }
+    if (distance != nullptr) *distance = sum;
+    // For the roundings of boxes, points and radii. A primitive too many does no harm.
+    const double radius = static_cast<double>(query_.radius);
+    return radius >= 0 && sum <= radius * radius * (1 + 1e-6);
+  }
+
+  void ask(const Part& part, std::uint32_t primitive, float scale) {
+    RTCPointQueryFunctionArguments arguments{};
+    arguments.query = &query_, arguments.userPtr = user_, arguments.context = &context_;
+    arguments.primID = primitive, arguments.geomID = part.id, arguments.similarityScale = scale;
+    for (const RTCPointQueryFunction function : {part.geometry->point_query, function_})
+      if (function != nullptr && function(&arguments)) has_changed_ = true;
+  }
+
+  void visit_triangles(const Built& built, const Space& space) {
+    const raylanes::BvhView tree = std::as_const(*built.mesh).view();
+    struct Child {
+      double distance;
+      raylanes::TreeReference reference;
+    };
+    std::vector<Child> stack;
+    if (tree.root != raylanes::empty_reference) stack.push_back({0, tree.root});
+    while (!stack.empty()) {
+      const Child child = stack.back();
+      stack.pop_back();
+      if (!(child.distance <=
+            static_cast<double>(query_.radius) * static_cast<double>(query_.radius) * (1 + 1e-6)))
+        continue;
+      if (raylanes::refers_to_leaf(child.reference)) {
+        visit_leaf(built, space, tree.leaves[raylanes::leaf_of(child.reference).block]);
+        continue;
+      }
+      const raylanes::WideNode& node = tree.nodes[child.reference];
+      const auto begin = static_cast<std::ptrdiff_t>(stack.size());
+      for (std::size_t k = 0; k < raylanes::tree_width; ++k) {
+        double distance;
+        if ((node.occupied >> k & 1) != 0 &&
+            is_near(space, {node.lo[0][k], node.lo[1][k], node.lo[2][k]},
+                    {node.hi[0][k], node.hi[1][k], node.hi[2][k]}, &distance))
+          stack.push_back({distance, node.child[k]});
+      }
+      std::sort(stack.begin() + begin, stack.end(),
+                [](const Child& a, const Child& b) { return a.distance > b.distance; });
+    }
+  }
+  void visit_leaf(const Built& built, const Space& space, const raylanes::LeafBlock<9>& leaf) {
+    const Face* last = nullptr;
+    for (std::size_t k = 0; k < raylanes::tree_width; ++k) {
+      if (leaf.primitive[k] >= built.faces.size()) continue;
+      Float3 lo, hi;
+      for (std::size_t a = 0; a < 3; ++a)
+        std::tie(lo[a], hi[a]) =
+            std::minmax({leaf.number[a][k], leaf.number[3 + a][k], leaf.number[6 + a][k]});
+      if (!is_near(space, lo, hi)) continue;
+      const Face& face = built.faces[leaf.primitive[k]];
+      const Part& part = built.parts[face.part];
+      // A quad or a grid is asked about once a leaf, if its triangles are neighbours.
+      const bool is_again = last != nullptr && last->part == face.part && last->primitive == face.primitive;
+      last = &face;
+      if (!is_again) ask(part, face.primitive, space.scale);
+    }
+  }
+
+  void visit_things(const Built& built, const Space& space) {
+    for (std::size_t i = 0; i < built.things.size(); ++i) {
+      const Thing& thing = built.things[i];
+      const Part& part = built.parts[thing.part];
+      const raylanes::Box& box = built.boxes[i];
+      if (is_empty(box) || !is_near(space, box.lo, box.hi)) continue;
+      if (part.geometry->is_user()) ask(part, thing.primitive, space.scale);
+      if (thing.instanced != nullptr && context_.instStackSize == 0) visit_instance(part, *thing.instanced);
+    }
+  }
+  void visit_instance(const Part& part, const Built& of) {
+    const Geometry& instance = *part.geometry;
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c) {
+        const double last = c == 3 ? 1 : 0;
+        context_.world2inst[0][c * 4 + r] = static_cast<float>(r == 3 ? last : instance.to_local.row[r][c]);
+        context_.inst2world[0][c * 4 + r] = static_cast<float>(r == 3 ? last : instance.to_scene.row[r][c]);
+      }
+    context_.instID[0] = part.id, context_.instStackSize = 1;
+    visit(of, instance_space(instance, query_));
+    context_.instID[0] = RTC_INVALID_GEOMETRY_ID, context_.instStackSize = 0;
+  }
+
+  RTCPointQuery& query_;
+  RTCPointQueryContext& context_;
+  RTCPointQueryFunction function_;
+  void* user_;
+  bool has_changed_ = false;
+};
+
+bool query_one(RTCScene handle, RTCPointQuery* query, RTCPointQueryContext* context,
+               RTCPointQueryFunction function, void* user) {
+  return on(handle, [&](Scene& scene) {
+    require_some(query, context);
+    Search search(*query, *context, function, user);
+    search.visit(*scene.built, scene_space(*query));
+    return search.has_changed();
+  });
+}
+
+template <int lanes, class Packet>
+bool query_packet(const int* valid, RTCScene handle, Packet* points, RTCPointQueryContext* context,
+                  RTCPointQueryFunction function, void** user) {
+  return on(handle, [&](Scene&) {
+    require_some(valid, points);
+    bool has_changed = false;
+    for (int i = 0; i < lanes; ++i) {
+      if (valid[i] == 0) continue;
+      RTCPointQuery one{points->x[i], points->y[i], points->z[i], points->time[i], points->radius[i]};
+      has_changed |= query_one(handle, &one, context, function, user == nullptr ? nullptr : user[i]);
+      points->radius[i] = one.radius;
+    }
+    return has_changed;
+  });
+}
+
+}  // namespace
+}  // namespace embree
+
+using namespace embree;
+
+RTC_API bool rtcPointQuery(RTCScene scene, RTCPointQuery* query, RTCPointQueryContext* context,
+                           RTCPointQueryFunction function, void* user) {
+  return query_one(scene, query, context, function, user);
+}
+RTC_API bool rtcPointQuery4(const int* valid, RTCScene scene, RTCPointQuery4* query,
+                            RTCPointQueryContext* context, RTCPointQueryFunction function, void** user) {
+  return query_packet<4>(valid, scene, query, context, function, user);
+}
+RTC_API bool rtcPointQuery8(const int* valid, RTCScene scene, RTCPointQuery8* query,
+                            RTCPointQueryContext* context, RTCPointQueryFunction function, void** user) {
+  return query_packet<8>(valid, scene, query, context, function, user);
+}
+RTC_API bool rtcPointQuery16(const int* valid, RTCScene scene, RTCPointQuery16* query,
+                             RTCPointQueryContext* context, RTCPointQueryFunction function, void** user) {
+  return query_packet<16>(valid, scene, query, context, function, user);
+}

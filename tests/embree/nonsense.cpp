@@ -1,0 +1,188 @@
+// Null handles, null pointers and random calls: errors, but no crash. Ours alone; Embree ends programs for less.
+#include <dlfcn.h>
+
+#include <bit>
+#include <random>
+
+#include "calls.hpp"
+
+void show(const char*, RTCScene, const RTCRayHit&) {}
+
+namespace {
+
+int failures = 0;
+void expect(const char* what, RTCDevice of, RTCError code) {
+  const RTCError found = rtcGetDeviceError(of);
+  if (found == code) return;
+  std::printf("%s: error %d, not %d\n", what, static_cast<int>(found), static_cast<int>(code));
+  ++failures;
+}
+
+void null_handles() {
+  const auto refused = [](const char* what, auto&& call) {
+    call();
+    expect(what, nullptr, RTC_ERROR_INVALID_ARGUMENT);
+  };
+  RTCRayHit ray = ray_of({}, {});
+  refused("retain a device", [] { rtcRetainDevice(nullptr); });
+  refused("release a device", [] { rtcReleaseDevice(nullptr); });
+  refused("a property", [] { rtcGetDeviceProperty(nullptr, RTC_DEVICE_PROPERTY_VERSION); });
+  refused("a buffer", [] { rtcNewBuffer(nullptr, 9); });
+  refused("data", [] { rtcGetBufferData(nullptr); });
+  refused("a geometry", [] { rtcNewGeometry(nullptr, RTC_GEOMETRY_TYPE_TRIANGLE); });
+  refused("a commit of a geometry", [] { rtcCommitGeometry(nullptr); });
+  refused("a mask", [] { rtcSetGeometryMask(nullptr, 1); });
+  refused("a scene", [] { rtcNewScene(nullptr); });
+  refused("to attach", [] { rtcAttachGeometry(nullptr, nullptr); });
+  refused("a commit of a scene", [] { rtcCommitScene(nullptr); });
+  refused("a ray", [&] { rtcIntersect1(nullptr, &context, &ray); });
+  refused("a shadow", [&] { rtcOccluded1(nullptr, &context, &ray.ray); });
+  refused("a packet", [] { rtcIntersect4(nullptr, nullptr, nullptr, nullptr); });
+  refused("a point", [] { rtcPointQuery(nullptr, nullptr, nullptr, nullptr, nullptr); });
+  refused("values", [] { rtcInterpolate(nullptr); });
+  refused("more values", [] { rtcInterpolateN(nullptr); });
+  refused("a filter", [] { rtcFilterIntersection(nullptr, nullptr); });
+}
+
+void null_pointers() {
+  const auto refused = [](const char* what, auto&& call) {
+    call();
+    expect(what, device, RTC_ERROR_INVALID_ARGUMENT);
+  };
+  RTCScene scene = scene_of({});
+  RTCGeometry mesh = triangles_of(unit_triangle),
+              instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  RTCRayHit ray = ray_of({}, {});
+  refused("no context", [&] { rtcIntersect1(scene, nullptr, &ray); });
+  refused("no ray", [&] { rtcOccluded1(scene, &context, nullptr); });
+  refused("no packet", [&] { rtcIntersect16(nullptr, scene, &context, nullptr); });
+  refused("no stream", [&] { rtcOccluded1M(scene, &context, nullptr, 3, 64); });
+  refused("no bounds", [&] { rtcGetSceneBounds(scene, nullptr); });
+  refused("no query", [&] { rtcPointQuery(scene, nullptr, nullptr, nullptr, nullptr); });
+  refused("no vertices", [&] {
+    rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, nullptr, 0, 12, 3);
+  });
+  refused("no matrix", [&] { rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, nullptr); });
+  refused("no rotation", [&] { rtcSetGeometryTransformQuaternion(instance, 0, nullptr); });
+  refused("no scene to show", [&] { rtcSetGeometryInstancedScene(instance, nullptr); });
+  refused("no geometry", [&] { rtcAttachGeometry(scene, nullptr); });
+  refused("a type", [] { rtcNewGeometry(device, static_cast<RTCGeometryType>(99)); });
+  refused("a property", [] { rtcGetDeviceProperty(device, static_cast<RTCDeviceProperty>(9)); });
+  rtcNewBuffer(device, ~std::size_t{0});
+  expect("too large a buffer", device, RTC_ERROR_OUT_OF_MEMORY);
+  rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, std::size_t{1} << 40, 1u << 31);
+  expect("too large vertices", device, RTC_ERROR_OUT_OF_MEMORY);
+}
+
+// Kinds that are not supported take their buffers, and say so at their commit.
+void unsupported_kinds() {
+  RTCGeometry curve = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE);
+  fill(curve, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 16, std::vector<float>(16));
+  fill(curve, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, 4, std::vector<unsigned>(1));
+  expect("buffers of a curve", device, RTC_ERROR_NONE);
+  RTCScene scene = scene_of({curve, triangles_of(unit_triangle)});
+  expect("a curve", device, RTC_ERROR_INVALID_OPERATION);
+  RTCRayHit ray = ray_of({.25f, .25f, 1}, {0, 0, -1});
+  rtcIntersect1(scene, &context, &ray);
+  if (ray.hit.geomID != 1) std::printf("a triangle beside a curve is missed\n"), ++failures;
+  RTCGeometry moving = triangles_of(unit_triangle);
+  rtcSetGeometryTimeStepCount(moving, 2);
+  rtcCommitGeometry(moving);
+  expect("motion blur", device, RTC_ERROR_INVALID_OPERATION);
+  rtcCollide(scene, scene, nullptr, nullptr);
+  expect("collisions", device, RTC_ERROR_INVALID_OPERATION);
+}
+
+// Calls with handles that exist and anything else in place of numbers.
+void random_calls() {
+  std::mt19937 random(81);
+  const auto any = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
+  const auto anything = [&] {
+    const float some[] = {0, 1, -1, .25f, 1e-38f, 1e30f, inf, -inf, std::numeric_limits<float>::quiet_NaN()};
+    return any(4) == 0 ? some[any(9)] : static_cast<float>(any(2000)) / 1000 - 1;
+  };
+  const int types[] = {0, 1, 2, 8, 16, 24, 50, 51, 52, 120, 121};
+  const int formats[] = {0x5001, 0x5003, 0x5004, 0x9001, 0x9003, 0x9004, 0xA001};
+  std::vector<RTCGeometry> geometries;
+  std::vector<RTCScene> scenes{rtcNewScene(device), rtcNewScene(device)};
+  std::vector<std::vector<float>> memory;
+  for (int call = 0; call < 20000; ++call) {
+    while (geometries.size() < 12 || any(40) == 0)
+      geometries.push_back(rtcNewGeometry(device, static_cast<RTCGeometryType>(types[any(11)])));
+    RTCGeometry g = geometries[geometries.size() - 1 - any(12)];
+    RTCScene s = scenes[any(2)];
+    switch (any(12)) {
+      case 0:
+      case 1:
+      case 2: {
+        auto* to = static_cast<unsigned*>(
+            rtcSetNewGeometryBuffer(g, static_cast<RTCBufferType>(any(9)), any(8) == 0,
+                                    static_cast<RTCFormat>(formats[any(7)]), 4 * any(6), any(9)));
+        // Positions, indices, widths of grids: small numbers of each.
+        for (unsigned i = 0; to != nullptr && i < 16; ++i)
+          to[i] = any(2) == 0 ? any(4) : std::bit_cast<unsigned>(anything());
+        break;
+      }
+      case 3:
+        rtcSetGeometryMask(g, any(4));
+        break;
+      case 4: {
+        const float matrix[16] = {anything(), anything(), anything(), anything(), anything(), anything(),
+                                  anything(), anything(), anything(), anything(), anything(), anything()};
+        rtcSetGeometryTransform(g, 0, static_cast<RTCFormat>(0x9234 + any(20)), matrix);
+        rtcSetGeometryInstancedScene(g, scenes[0]);
+        break;
+      }
+      case 5:
+        rtcSetGeometryBuildQuality(g, static_cast<RTCBuildQuality>(any(5)));
+        break;
+      case 6:
+        any(2) == 0 ? rtcEnableGeometry(g) : rtcDisableGeometry(g);
+        break;
+      case 7:
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(s, g);
+        break;
+      case 8:
+        rtcDetachGeometry(s, any(30));
+        break;
+      case 9:
+        rtcSetSceneFlags(s, static_cast<RTCSceneFlags>(any(16)));
+        break;
+      case 10:
+        rtcCommitScene(s);
+        break;
+      default: {
+        std::vector<RTCRayHit> rays(
+            20, ray_of({anything(), anything(), anything()}, {anything(), anything(), anything()}, anything(),
+                       anything(), any(4)));
+        rtcIntersect1M(s, &context, rays.data(), any(21), sizeof(RTCRayHit));
+        rtcOccluded1(s, &context, &rays[0].ray);
+        float p[3], du[3], dv[3];
+        rtcInterpolate1(g, any(9), anything(), anything(), RTC_BUFFER_TYPE_VERTEX, 0, p, du, dv, any(4));
+        RTCPointQuery query{anything(), anything(), anything(), 0, anything()};
+        RTCPointQueryContext of_query;
+        rtcInitPointQueryContext(&of_query);
+        rtcPointQuery(s, &query, &of_query, nullptr, nullptr);
+      }
+    }
+    rtcGetDeviceError(device);
+  }
+  for (RTCScene scene : scenes) rtcReleaseScene(scene);
+  for (RTCGeometry g : geometries) rtcReleaseGeometry(g);
+}
+
+}  // namespace
+
+int main() {
+  Dl_info library{};
+  dladdr(reinterpret_cast<void*>(&rtcNewDevice), &library);
+  std::printf("%s\n", library.dli_fname);
+  if (std::strstr(library.dli_fname, "/embree/libembree3.so") == nullptr) return 1;
+  null_handles();
+  null_pointers();
+  unsupported_kinds();
+  random_calls();
+  std::printf("%d failures\n", failures);
+  return failures == 0 ? 0 : 1;
+}
