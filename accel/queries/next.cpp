@@ -20,7 +20,8 @@ auto filtered(const TracedTree& tree, const HitFilter& filter, const TraceOption
     require_exact(by);
     trace_hits(tree, rays, hits, by);
   };
-  return FilteredCall<float, HitFilter, TraceOptions, decltype(trace)>{"trace", filter, options, trace};
+  return FilteredCall<float, HitFilter, TraceOptions, decltype(trace), TreeLists<float, TracedTree>>{
+      "trace", filter, options, trace, {tree}};
 }
 
 }  // namespace

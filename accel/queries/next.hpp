@@ -5,7 +5,7 @@
 
 #include "../../dispatch/table/queries.hpp"
 #include "../batch/batch.hpp"
-#include "filtered.hpp"
+#include "filters/filtered_lists.hpp"
 
 namespace raylanes {
 
@@ -49,13 +49,14 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, con
 }
 
 // Calls with a filter, for all trees and scenes: trace(rays, hits, options) is their call without one, and finds what
-// is behind options.after. `call` begins messages.
-template <class T, class Filter, class Options, class Trace, class AnyHit = HitOf<T>>
+// is behind options.after. `call` begins messages. Hits behind those turned down come from lists, where there are some.
+template <class T, class Filter, class Options, class Trace, class Lists = NoLists, class AnyHit = HitOf<T>>
 struct FilteredCall {
   const char* call;
   const Filter& filter;
   const Options& options;
   Trace trace;
+  Lists lists = {};
 
   // RayRecords or RayArraysOf<T>.
   template <class Rays>
@@ -90,6 +91,14 @@ struct FilteredCall {
   }
   void find(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Options& by) const {
     trace(rays, hits, by);
+    if constexpr (!std::is_same_v<Lists, NoLists>)
+      if (filter && lists)
+        return replace_from_lists(rays, hits, filter, Lists::have_streams,
+                                  [&](const std::vector<RayOf<T>>& some,
+                                      const std::vector<std::size_t>& indices, std::uint32_t most) {
+                                    const auto skips = skips_of(rays.skip, indices);
+                                    return lists(some, skips, most, by);
+                                  });
     filter_hits<T>(rays, hits, filter, by,
                    [&](const std::vector<RayOf<T>>& some, std::vector<AnyHit>& last, const Options& again) {
                      trace({.records = some, .skip = again.skip}, last, again);

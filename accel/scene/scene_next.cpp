@@ -16,6 +16,28 @@ void require_exact_in_scene(const TraceOptions& options) {
         "scene: next hits and filters take the test exact alone; others have no order of hits");
 }
 
+// Lists of hits where a common tree has all that the mask sees.
+struct ListsOfCommon {
+  static constexpr bool have_streams = true;
+  const SceneParts& scene;
+  std::uint32_t mask;
+
+  explicit operator bool() const { return quick_tree(scene, mask) != nullptr; }
+  RayLists<SceneHit> operator()(const std::vector<Ray>& rays, std::span<const SkippedPrimitive> skips,
+                                std::uint32_t most, const TraceOptions& by) const {
+    const CommonTree& tree = *quick_tree(scene, mask);
+    const MemberNumbers numbers = tree.numbers();
+    std::vector<std::uint32_t> skipped;
+    for (const SkippedPrimitive& skip : skips) skipped.push_back(numbers.of(skip.instance, skip.primitive));
+    const TreeLists<float, TracedTree> lists{TreeOf::bvh(*tree.geometry->triangles())};
+    RayLists<Hit> found = lists(rays, skipped, most, by);
+    RayLists<SceneHit> spread{std::move(found.offsets), {}};
+    spread.items.reserve(found.items.size());
+    for (const Hit& hit : found.items) spread.items.push_back(numbers.owners.spread(hit));
+    return spread;
+  }
+};
+
 auto filtered(const SceneParts& scene, const SceneHitFilter& filter, const TraceOptions& options,
               std::uint32_t mask) {
   const auto trace = [&scene, mask](RaySource rays, const SceneHitView& hits, const TraceOptions& by) {
@@ -23,8 +45,8 @@ auto filtered(const SceneParts& scene, const SceneHitFilter& filter, const Trace
     rays.skip = {};  // scenes read that of the options
     trace_hits(scene, rays, hits, by, mask);
   };
-  return FilteredCall<float, SceneHitFilter, TraceOptions, decltype(trace), SceneHit>{"scene", filter,
-                                                                                      options, trace};
+  return FilteredCall<float, SceneHitFilter, TraceOptions, decltype(trace), ListsOfCommon, SceneHit>{
+      "scene", filter, options, trace, {scene, mask}};
 }
 
 // One ray whose caller rejects hits, if a common tree has all that the mask sees: its kernel asks about hits of the

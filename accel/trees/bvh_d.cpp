@@ -39,7 +39,8 @@ auto filtered(const DoubleTreeView& tree, const HitFilterD& filter, const TraceO
   const auto trace = [tree](const RaySourceOf<double>& rays, const HitViewD& hits, const TraceOptionsD& by) {
     trace_hits(tree, rays, hits, by);
   };
-  return FilteredCall<double, HitFilterD, TraceOptionsD, decltype(trace)>{"trace", filter, options, trace};
+  return FilteredCall<double, HitFilterD, TraceOptionsD, decltype(trace), TreeLists<double, DoubleTreeView>>{
+      "trace", filter, options, trace, {tree}};
 }
 
 BuildOptions build_again(const BvhDArrays& tree, int threads) {

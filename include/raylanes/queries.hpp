@@ -65,8 +65,8 @@ struct Crossing {
 
 /// A function that rejects hits, a batch at a time: hits[k] is a hit of ray rays[k] of the call. Set rejected[k], which
 /// is 0, to 1 to trace the ray on behind this hit.
-/// The calling thread calls it with the nearest hits of all rays first, some thousand at a time, then with the next
-/// hits of rejected rays. It sees each hit once. Exceptions pass through.
+/// The calling thread calls it with hits of many rays at a time, one of each. It sees the hits of a ray in order, each
+/// once, up to the one that it keeps. Exceptions pass through.
 using HitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const Hit> hits,
                                      std::span<std::uint8_t> rejected)>;
 

@@ -1,10 +1,10 @@
 // One ray whose caller rejects hits.
 #include <stdexcept>
 
-#include "../../dispatch/quiet_floats.hpp"
-#include "../../dispatch/table/kernel_table.hpp"
-#include "next.hpp"
-#include "traced_tree.hpp"
+#include "../../../dispatch/quiet_floats.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../next.hpp"
+#include "../traced_tree.hpp"
 
 namespace raylanes {
 namespace {
