@@ -9,8 +9,8 @@ from statistics import geometric_mean
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
-from results import MACHINES, Results  # noqa: E402
-from readme_figures import MACHINE, ends, root_row  # noqa: E402
+from results import MACHINES, Results, newest  # noqa: E402
+from readme_figures import ends, root_row  # noqa: E402
 from summary import printable, rows_of  # noqa: E402
 
 
@@ -34,11 +34,12 @@ def roots(rows, published):
 
 
 def line(results, folder):
-    least, greatest = ends(Results(results, 'rays', MACHINE), 'ratio')
-    published = root_row(Results(results, 'roots', MACHINE), 'correctly_rounded')['ratio_to_hardware']
+    machine = newest(results, 'rays')
+    least, greatest = ends(Results(results, 'rays', machine), 'ratio')
+    published = root_row(Results(results, 'roots', newest(results, 'roots')), 'correctly_rounded')['ratio_to_hardware']
     (traced, _), (rooted, _) = (rows_of(folder / f'{name}.json') for name in ('trace', 'roots'))
     return (f'here: {batches(traced, least, greatest)}; {roots(rooted, published)}; '
-            f'README has the {MACHINES[MACHINE]} of {Results(results, "rays", MACHINE).machine["date"]}')
+            f'README has the {MACHINES[machine]} of {Results(results, "rays", machine).machine["date"]}')
 
 
 if __name__ == '__main__':

@@ -5,6 +5,15 @@ from roots import ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, root_gains, root_times
 
 INK = '#808080'  # readable on a light and on a dark page
 FRONTS = ('sse2', 'avx', 'avx2', 'avx512')
+# Above a plot, where no line crosses it.
+LEGEND = {'fontsize': 8, 'loc': 'lower left', 'borderaxespad': 0, 'handletextpad': 0.5}
+
+
+def legend_over(figure, axes, columns):
+    """The legend of several panels, in a line of its own above them."""
+    figure.get_layout_engine().set(rect=(0, 0, 1, 0.93))
+    figure.legend(*axes.get_legend_handles_labels(), fontsize=8, loc='upper center', borderaxespad=0, ncols=columns,
+                  handletextpad=0.5, columnspacing=1.4).set_in_layout(False)
 
 
 def rays_chart(results):
@@ -23,11 +32,11 @@ def rays_chart(results):
                          label=name if i == 0 else None)
                 axes.annotate(f'{value:.2f}', (i + 0.28 * (k - 1), value), ha='center', va='bottom', fontsize=7)
         axes.set_xticks(range(len(KINDS)), [name.replace(' ', '\n') for name in KINDS.values()])
-        axes.set_title(path, fontsize=10, loc='left')
+        axes.set_title(f'{path}, rays without skip', fontsize=9, loc='left')
         axes.grid(axis='x', visible=False)
     panels[0].set_ylabel("speed, × Embree's best mode")
-    panels[0].set_ylim(0, 2.2)
-    panels[1].legend(fontsize=8, loc='upper right')
+    panels[0].set_ylim(0, 1.8)
+    legend_over(figure, panels[0], 3)
     shown = ' '.join(text.get_text() for axes in panels for text in axes.texts)
     return finished(figure, 'Batches of rays: raylanes and Embree 3.13 by kind of ray', shown)
 
@@ -44,13 +53,15 @@ def front_of(rows):
 # The accuracies of calls, as errors in ULP of floats: a relative error d is at most d * 2^24 of them.
 BOUNDS = {'correctly rounded': (0.5, 'right'), '1 ULP': (1.0, 'center'), '2^-22': (4.0, 'center'),
           '2^-16': (256.0, 'center'), '2^-11': (8192.0, 'center'), '2^-4': (2.0**20, 'center')}
-NAMES = {'goldschmidt_beside_hardware': ('goldschmidt\nbeside the divider', (-7, -6), 'right'),
-         'estimate_residual_beside_hardware': ('one residual\nbeside the divider', (2, -21), 'right'),
-         'estimate_beside_hardware': ('estimate\nbeside the divider', (0, -21), 'center'),
-         'polynomial_3': ('polynomial_3', (0, 6), 'center'), 'polynomial_1': ('polynomial_1', (0, -10), 'left'),
-         'classic_0': ('bit trick alone', (0, 7), 'center'), 'classic_1': ('and 1 Newton step', (0, 6), 'left'),
-         'classic_2': ('and 2', (4, 5), 'left'), 'classic_3': ('and 3', (4, 5), 'left'),
-         'hardware': ("the processor's\ninstruction", (-7, -3), 'right')}
+NAMES = {'goldschmidt_beside_hardware': ('goldschmidt\nbeside the divider', (-7, -1), 'right'),
+         'estimate_residual_beside_hardware': ('one residual\nbeside the divider', (-19, -10), 'right'),
+         'estimate_beside_hardware': ('estimate\nbeside the divider', (4, -29), 'left'),
+         'polynomial_3': ('polynomial_3', (5, -2), 'left'), 'polynomial_1': ('polynomial_1', (5, -9), 'left'),
+         'classic_0': ('bit trick, no Newton step', (5, -12), 'right'),
+         'classic_1': ('bit trick, 1 Newton step', (16, -2), 'left'),
+         'classic_2': ('bit trick, 2 Newton steps', (13, 14), 'left'),
+         'classic_3': ('bit trick,\n3 Newton steps', (-14, 0), 'right'),
+         'hardware': ("the processor's\ninstruction", (-7, -5), 'right')}
 
 
 def name_methods(axes, rows):
@@ -86,16 +97,17 @@ def roots_chart(results):
     shown += name_methods(axes, {row['method']: row for row in results.where(function='sqrt', path=FRONTS[-1])})
     axes.set_xlabel('largest error [ULP]; names: methods on avx512; vertical lines: accuracies of calls')
     axes.set_ylabel('time [ns a value]')
-    axes.set_xlim(0.06, 3e6)
-    axes.set_ylim(0.036, 1.2)
-    axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1], ['0.05', '0.1', '0.2', '0.5', '1'])
+    axes.set_xlim(0.04, 3e6)
+    axes.set_ylim(0.03, 0.7)
+    axes.set_yticks([0.05, 0.1, 0.2, 0.5], ['0.05', '0.1', '0.2', '0.5'])
     axes.yaxis.set_minor_formatter(lambda y, _: '')
     axes.grid(axis='x', visible=False)
-    axes.legend(fontsize=8, loc='upper right', title='fastest for its error', title_fontsize=8)
+    axes.legend(bbox_to_anchor=(0, 1.06), ncols=4, title='the fastest methods for their error, by ISA path',
+                title_fontsize=8, alignment='left', **LEGEND)
     return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
 
 
-def ratios_by_size(sizes, lines, labels, place, title):
+def ratios_by_size(sizes, lines, labels, title):
     """A chart of ratios, from zero on with a line at one, against sizes that grow by factors. Lines are (words of its
     comment, label, ratios); labels name the two axes."""
     figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.2), layout='constrained')
@@ -112,7 +124,7 @@ def ratios_by_size(sizes, lines, labels, place, title):
     axes.set_ylim(bottom=0)
     axes.set_xlabel(labels[0])
     axes.set_ylabel(labels[1])
-    axes.legend(fontsize=8, loc=place)
+    axes.legend(bbox_to_anchor=(0, 1.02), ncols=len(lines), **LEGEND)
     return finished(figure, title, ' '.join(shown))
 
 
@@ -120,8 +132,7 @@ def lengths_chart(results):
     """How many times as fast as the instruction roots are, against the length of the array."""
     lines = [([way], way.replace('_', ' '), root_gains(results, way)) for way in ROOT_WAYS[1:-1]]
     labels = 'floats in the array; in and out take 8 bytes each', 'speed, × instruction'
-    return ratios_by_size(ROOT_LENGTHS, lines, labels, 'upper right',
-                          'Square roots: gain over the instruction by length of the array')
+    return ratios_by_size(ROOT_LENGTHS, lines, labels, 'Square roots: gain over the instruction by length of the array')
 
 
 def sizes_chart(results):
@@ -132,7 +143,7 @@ def sizes_chart(results):
         for rays in ('primary', 'diffuse'):
             ratio_of = {row['triangles']: row['ratio'] for row in rows if (row['rays'], row['mode']) == (rays, mode)}
             lines.append(([rays, mode], f'{KINDS[rays]}, {name}', [ratio_of[n] for n in triangles]))
-    return ratios_by_size(triangles, lines, ('triangles', 'speed, × Embree'), 'lower left',
+    return ratios_by_size(triangles, lines, ('triangles', 'speed, × Embree'),
                           'Rays through one mesh cut finer and finer: speed beside Embree')
 
 
@@ -149,8 +160,10 @@ def cliffs_chart(results):
         axes.set_xticks(places, [f'{share * 100:g}' for share in ROOT_SHARES])
         axes.set_xlabel(f'share of {special} [%]')
         axes.set_yscale('log')
+        axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5], ['0.02', '0.05', '0.1', '0.2', '0.5'])
+        axes.yaxis.set_minor_formatter(lambda y, _: '')
     panels[0].set_ylabel('time [ns a value]')
-    panels[0].legend(fontsize=7, loc='upper left')
+    legend_over(figure, panels[0], 6)
     return finished(figure, 'Square roots: time against the share of zeros and of subnormal numbers', ' '.join(shown))
 
 
@@ -160,7 +173,6 @@ def finished(figure, description, shown):
     return svg.replace('var(--ink)', INK).replace('var(--grid)', INK + '40') + f'\n<!-- {shown} -->\n'
 
 
-# By picture: the kind of file, its machine, and who draws it.
-CHARTS = {'rays': ('rays', 'xeon', rays_chart), 'roots': ('roots', 'xeon', roots_chart),
-          'lengths': ('lengths', 'zen5', lengths_chart), 'sizes': ('sizes', 'zen5', sizes_chart),
-          'cliffs': ('cliffs', 'zen5', cliffs_chart)}
+# By picture: the kind of file, whose newest one it shows, and who draws it.
+CHARTS = {'rays': ('rays', rays_chart), 'roots': ('roots', roots_chart), 'lengths': ('lengths', lengths_chart),
+          'sizes': ('sizes', sizes_chart), 'cliffs': ('cliffs', cliffs_chart)}

@@ -30,11 +30,13 @@ KEYS = {
     'modes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'mode', 'mrays_per_second', 'spread'),
     'parts': ('scene', 'triangles', 'parts', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second',
               'spread', 'ratio', 'ratio_to', 'ratio_to_tree'),
+    'filters': ('scene', 'triangles', 'query', 'rays', 'ray_count', 'contender', 'path', 'mrays_per_second', 'ratio',
+                'ratio_quartiles'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
 KEYS['lengths'] = KEYS['cliffs']
-KEYS['calls'] = KEYS['exact'] = KEYS['rays']
+KEYS['calls'] = KEYS['exact'] = KEYS['skips'] = KEYS['rays']
 
 
 def rounded(value):
@@ -72,7 +74,9 @@ def is_shown(kind, row):
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
     if kind == 'parts':
         return row['contender'].startswith('scene')
-    return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes') or row['contender'] == 'raylanes'
+    if kind == 'filters':
+        return row['contender'].startswith('raylanes')
+    return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes', 'skips') or row['contender'] == 'raylanes'
 
 
 def main(kind, name, processor, command, *files):

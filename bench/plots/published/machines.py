@@ -47,10 +47,38 @@ def words(accuracy):
     return accuracy.replace('_', ' ')
 
 
+def where_two_paths(**chosen):
+    return lambda results: pair(results.mean(path=path, **chosen) for path in TWO_PATHS)
+
+
+def few_rays(results):
+    return f"{results.mean(mode='automatic', pixels=min(results.names('pixels'))):.2f}"
+
+
+def kept(contender, share):
+    return where_two_paths(contender=contender, query=f'kept, {share} % rejected')
+
+
+# What each headline figure is, then what it is in the cases that a reader may have.
 LINES = [
     ("batches of rays, × Embree's best mode", 'rays', on_two_paths('ratio')),
     ("batches of rays, × Embree's robust mode", 'rays', on_two_paths('ratio_to_robust')),
+    ("batches of 65,536 rays, avx512, × Embree's best mode", 'sizes', few_rays),
+    ("batches with `skip`, × Embree's best mode", 'skips', where_two_paths(mode='automatic')),
+    ("batches through 100 to 500 parts, × Embree's flat scene", 'parts',
+     where_two_paths(contender='scene', mode='automatic')),
+    ("batches through 100 to 500 parts that move, × Embree's instances", 'parts',
+     where_two_paths(contender='scene_moving', mode='automatic')),
+    *((f"batches, a filter rejects {share} %, × Embree's filters", 'filters', kept('raylanes, a batch', share))
+      for share in (0, 50, 90)),
     ('one ray a call, × Embree', 'calls', on_two_paths('ratio')),
+    ('one ray a call with `skip`, × Embree', 'skips', where_two_paths(mode='call')),
+    ("one ray a call through 100 to 500 parts, × Embree's flat scene", 'parts',
+     where_two_paths(contender='scene', mode='call')),
+    ("one ray a call through 100 to 500 parts that move, × Embree's instances", 'parts',
+     where_two_paths(contender='scene_moving', mode='call')),
+    *((f"one ray a call, a filter rejects {share} %, × Embree's filters", 'filters', kept('raylanes', share))
+      for share in (0, 50, 90)),
     ('rays of doubles, calls, × Embree with doubles', 'doubles', doubles_by('call')),
     ('rays of doubles, batches, × Embree with doubles', 'doubles', doubles_by('batch')),
     ('exact test over arrays, time / watertight', 'kernels', time_of_tests),
@@ -68,4 +96,5 @@ def machines_table(folder):
     def cell(kind, machine, value):
         return value(Results(folder, kind, machine)) if machine in machines_of(folder, kind) else 'not measured'
     return ['', *table(['geometric means', *(MACHINES[machine] for machine in machines)],
-                 [[name, *(cell(kind, machine, value) for machine in machines)] for name, kind, value in LINES]), '']
+                       [[name, *(cell(kind, machine, value) for machine in machines)]
+                        for name, kind, value in LINES if machines_of(folder, kind)]), '']

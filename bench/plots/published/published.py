@@ -21,7 +21,7 @@ except ImportError:
 import readme_figures  # noqa: E402
 from charts import CHARTS  # noqa: E402
 from machines import machines_table  # noqa: E402
-from results import MACHINES, Results, machines_of  # noqa: E402
+from results import MACHINES, Results, machines_of, newest  # noqa: E402
 from tables import TABLES  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 
@@ -57,8 +57,8 @@ def main(arguments):
     folder, file = root / 'bench/results', root / 'docs/figures.md'
     page = file.read_text(encoding='utf-8')
     made = page_with_tables(page, folder)
-    drawn = {root / f'docs/pictures/{name}.svg': draw(Results(folder, kind, machine))
-             for name, (kind, machine, draw) in CHARTS.items()}
+    drawn = {root / f'docs/pictures/{name}.svg': draw(Results(folder, kind, newest(folder, kind)))
+             for name, (kind, draw) in CHARTS.items()}
     if not check:
         write_whole(file, made)
         for picture, svg in drawn.items():

@@ -1,10 +1,9 @@
 """What README.md says of speed, from the measured files, and whether each sentence that does so names its machine."""
 import re
 
-from results import KINDS, MACHINES, TWO_PATHS, Results
+from results import KINDS, MACHINES, TWO_PATHS, Results, machines_of, newest
 from tables import exact_table
 
-MACHINE = 'xeon'  # whose figures README has
 FIGURE = r'\d[\d.,]*(?: to \d[\d.,]*)? ?(?:times|ns|µs|%|×)'
 ROUNDS = 1.02  # methods whose times differ by less are as fast
 
@@ -19,30 +18,43 @@ def root_row(roots, accuracy, path='avx512'):
     return next(row for row in roots.where(function='sqrt', path=path) if accuracy in row['serves'])
 
 
-def figures(folder):
-    """The figures of README's sentences, in their words."""
-    rays, calls, roots, exact, kernels = (Results(folder, kind, MACHINE)
-                                          for kind in ('rays', 'calls', 'roots', 'exact', 'kernels'))
+def longest_of_test(exact):
+    """How much longer the exact test takes, at most, through trees."""
+    ratios = (float(value) for line in exact_table(exact) if 'watertight' in line
+              for value in re.findall(r'\d\.\d\d', line))
+    return 100 * (max(ratios) - 1)
 
-    def between(key):
-        least, greatest = ends(rays, key)
-        return f'{least:.1f} to {greatest:.1f} times'
 
-    def root(accuracy):
-        row = root_row(roots, accuracy)
-        return f"{row['nanoseconds']:.3f} ns", f"{row['ratio_to_hardware']:.1f} times"
-
+def longest_over_arrays(kernels):
     def time(test, **chosen):
         return kernels.one(kernel='triangle', form='1xN', test=test, grade='reproducible',
                            **chosen)['nanoseconds_per_primitive']
+    return 100 * (max(time('exact', path=path, query=query) / time('watertight', path=path, query=query)
+                      for path in TWO_PATHS for query in ('any', 'closest')) - 1)
 
-    longest = max(float(value) for line in exact_table(exact) if 'watertight' in line
-                  for value in re.findall(r'\d\.\d\d', line))
-    over_arrays = max(time('exact', path=path, query=query) / time('watertight', path=path, query=query)
-                      for path in TWO_PATHS for query in ('any', 'closest'))
-    return [between('ratio'), between('ratio_to_robust'), *root('correctly_rounded'), *root('within_2^-11'),
-            f"{calls.mean(path='avx512'):.2f} times", f"{calls.mean('ratio_to_packed', path='avx512'):.2f} times",
-            f'up to {(longest - 1) * 100:.0f} % longer', f'{(over_arrays - 1) * 100:.0f} % over arrays']
+
+def figures(folder):
+    """The figures of README's sentences, in their words, each with the machines that its sentence must name: times are
+    those of the newest file, ratios run over all machines."""
+    found = {}
+
+    def add(kind, words, *values):
+        machines = machines_of(folder, kind)
+        numbers = [value(Results(folder, kind, machine)) for machine in machines for value in values]
+        ends = [max(numbers)] if words[0] == 'up to ' else [min(numbers), max(numbers)]
+        found[words[0] + ' to '.join(dict.fromkeys(format(end, words[1]) for end in ends)) + words[2]] = machines
+
+    for key in ('ratio', 'ratio_to_robust'):
+        add('rays', ('', '.1f', ' times'), *(lambda rays, key=key, k=k: ends(rays, key)[k] for k in (0, 1)))
+    for accuracy in ('correctly_rounded', 'within_2^-11'):
+        machine = newest(folder, 'roots')
+        found[f"{root_row(Results(folder, 'roots', machine), accuracy)['nanoseconds']:.3f} ns"] = [machine]
+        add('roots', ('', '.1f', ' times'), lambda roots, to=accuracy: root_row(roots, to)['ratio_to_hardware'])
+    for key in ('ratio', 'ratio_to_packed'):
+        add('calls', ('', '.2f', ' times'), lambda calls, key=key: calls.mean(key, path='avx512'))
+    add('exact', ('up to ', '.0f', ' % longer'), longest_of_test)
+    add('kernels', ('', '.0f', ' % over arrays'), longest_over_arrays)
+    return found
 
 
 def sentences(readme):
@@ -55,7 +67,7 @@ def sentences(readme):
 def slower_methods(folder):
     """The accuracies whose method is not the fastest checked one within its error, which README says of AVX2 and
     AVX-512."""
-    roots = Results(folder, 'roots', MACHINE)
+    roots = Results(folder, 'roots', newest(folder, 'roots'))
     for path in ('avx2', 'avx512'):
         rows = [row for row in roots.where(function='sqrt', path=path) if row['method'] != 'estimate_unchecked']
         for row in (row for row in rows if row['serves']):
@@ -67,12 +79,12 @@ def slower_methods(folder):
 def faults(readme, folder):
     """What README should say, which of its figures come from no file, and which sentences name no machine."""
     said, known = [' '.join(sentence.split()) for sentence in sentences(readme)], figures(folder)
-    for figure in known:
+    for figure, machines in known.items():
         holding = [sentence for sentence in said if figure in sentence]
         if not holding:
             yield f'README.md should say: {figure}'
-        yield from (f'README.md: {figure} without the machine, {MACHINES[MACHINE]}: {sentence}' for sentence in holding
-                    if MACHINES[MACHINE] not in sentence)
+        yield from (f'README.md: {figure} without the machine, {MACHINES[machine]}: {sentence}' for sentence in holding
+                    for machine in machines if MACHINES[machine] not in sentence)
     for sentence in said:
         yield from (f'README.md: {found} is of no measured file: {sentence}' for found in re.findall(FIGURE, sentence)
                     if not any(found in figure for figure in known))

@@ -17,6 +17,11 @@ def machines_of(folder, kind='*'):
     return [machine for machine in MACHINES if list(pathlib.Path(folder).glob(f'{machine}-*-{kind}.json'))]
 
 
+def newest(folder, kind):
+    """Of the machines that have a file of this kind, the one whose file is the newest."""
+    return max(machines_of(folder, kind), key=lambda machine: Results(folder, kind, machine).machine['date'])
+
+
 class Results:
     """One measured file: its machine, its command, its rows."""
 
