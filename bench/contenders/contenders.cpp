@@ -44,13 +44,15 @@ bool Answers::same_bytes(const Answers& other) const {
          (hits.empty() || std::memcmp(hits.data(), other.hits.data(), hits.size() * sizeof(Hit)) == 0);
 }
 
-Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch) {
-  return {std::string(traversal_mode_names[static_cast<std::size_t>(options.mode)]),
-          [&tree, options, batch](const RaySet& set, Answers& answers) {
+Contender our_contender(const TriangleTree& tree, const TraceOptions& given, std::size_t batch, bool skips) {
+  return {std::string(traversal_mode_names[static_cast<std::size_t>(given.mode)]),
+          [&tree, given, batch, skips](const RaySet& set, Answers& answers) {
             const std::span<const Ray> rays(set.rays);
+            TraceOptions options = given;
             const std::size_t step = batch == 0 ? rays.size() : batch;
             for (std::size_t i = 0; i < rays.size(); i += step) {
               const std::size_t count = std::min(step, rays.size() - i);
+              if (skips && !set.left.empty()) options.skip = std::span(set.left).subspan(i, count);
               if (set.query == Query::closest)
                 tree.closest(rays.subspan(i, count), std::span(answers.hits).subspan(i, count), options);
               else
@@ -59,7 +61,7 @@ Contender our_contender(const TriangleTree& tree, const TraceOptions& options, s
           }};
 }
 
-Contender our_caller(const TriangleTree& tree, const TraceOptions& options) {
+Contender our_caller(const TriangleTree& tree, const TraceOptions& options, bool skips) {
   const bool is_usual = (options.path == nullptr || options.path == &active_path()) &&
                         options.test == TraceOptions{}.test && options.grade == TraceOptions{}.grade;
   const auto call_each = [](const RaySet& set, Answers& answers, const auto& closest, const auto& occluded) {
@@ -68,8 +70,17 @@ Contender our_caller(const TriangleTree& tree, const TraceOptions& options) {
     else
       for (std::size_t i = 0; i < set.rays.size(); ++i) answers.occluded[i] = occluded(set.rays[i]) ? 1 : 0;
   };
-  return {"call", [&tree, options, is_usual, call_each](const RaySet& set, Answers& answers) {
-            if (is_usual)
+  return {"call", [&tree, options, is_usual, call_each, skips](const RaySet& set, Answers& answers) {
+            TraceOptions skipping = options;
+            const std::uint32_t* left = set.left.data();
+            const auto next = [&]() -> const TraceOptions& {
+              return skipping.skip = std::span(left++, 1), skipping;
+            };
+            if (skips && !set.left.empty())
+              call_each(
+                  set, answers, [&](const Ray& ray) { return tree.closest(ray, next()); },
+                  [&](const Ray& ray) { return tree.occluded(ray, next()); });
+            else if (is_usual)
               call_each(
                   set, answers, [&](const Ray& ray) { return tree.closest(ray); },
                   [&](const Ray& ray) { return tree.occluded(ray); });

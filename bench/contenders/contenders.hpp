@@ -42,12 +42,14 @@ struct Contender {
   bool is_packed() const { return static_cast<bool>(timed); }
 };
 
-// In calls of `batch` rays each, 0: all at once. The tree must outlive the contender.
-Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0);
+// In calls of `batch` rays each, 0: all at once. With `skips`, rays leave out the triangle that they begin on. The tree
+// must outlive the contender.
+Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0,
+                        bool skips = false);
 
 // Calls closest(ray) or occluded(ray) for each ray, as users do. Calls without options if the given options are the
 // defaults and the path is the active one. Its mode is `call`. The tree must outlive it.
-Contender our_caller(const TriangleTree& tree, const TraceOptions& options);
+Contender our_caller(const TriangleTree& tree, const TraceOptions& options, bool skips = false);
 
 // Embree called with a ray at a time: `call` makes its ray and takes its hit within the clock, as programs do that have
 // rays of their own; `call_packed` has rays in Embree's layout beforehand. The Embree scene must outlive both.

@@ -29,18 +29,24 @@ Workload::Workload(const Scene& scene, const Bvh& bvh, std::uint32_t width, std:
   bvh.closest(primary_, hits_);
 }
 
+std::vector<std::uint32_t> Workload::left() const {
+  std::vector<std::uint32_t> left;
+  for (const std::size_t i : secondary_origins(hits_, scene_.mesh)) left.push_back(hits_[i].primitive);
+  return left;
+}
+
 RaySet Workload::rays(RayKind kind) const {
   switch (kind) {
     case RayKind::primary:
       return {"primary", Query::closest, primary_};
     case RayKind::shadow:
-      return {"shadow", Query::any, shadow_rays(hits_, scene_.mesh, light_)};
+      return {"shadow", Query::any, shadow_rays(hits_, scene_.mesh, light_), left()};
     case RayKind::light:
       return {"light", Query::any, rays_from_light(shadow_rays(hits_, scene_.mesh, light_), light_)};
     case RayKind::diffuse:
-      return {"diffuse", Query::closest, diffuse_rays(primary_, hits_, scene_.mesh, bounce_seed)};
+      return {"diffuse", Query::closest, diffuse_rays(primary_, hits_, scene_.mesh, bounce_seed), left()};
     case RayKind::ao:
-      return {"ao", Query::any, ambient_occlusion_rays(primary_, hits_, scene_.mesh, bounce_seed)};
+      return {"ao", Query::any, ambient_occlusion_rays(primary_, hits_, scene_.mesh, bounce_seed), left()};
     case RayKind::random:
       return {"random", Query::closest, random_rays(scene_.mesh, primary_.size(), bounce_seed)};
   }

@@ -19,6 +19,8 @@ struct RaySet {
   std::string name;
   Query query;
   std::vector<Ray> rays;
+  std::vector<std::uint32_t> left =
+      {};  // the triangle that each ray begins on; empty if rays begin elsewhere
 };
 
 enum class RayKind : std::uint8_t { primary, shadow, light, diffuse, ao, random };
@@ -45,6 +47,8 @@ class Workload {
   const Float3& light() const { return light_; }
 
  private:
+  std::vector<std::uint32_t> left() const;
+
   const Scene& scene_;
   std::vector<Ray> primary_;
   std::vector<Hit> hits_;

@@ -166,6 +166,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const SceneTrace& tr
                  {"threads", options.trace.threads},
                  {"order", pixel_order_names[static_cast<std::size_t>(options.order)]},
                  {"warm", options.warm},
+                 {"skips", options.skips},
                  {"rounds_mrays_per_second", row.rounds_mrays_per_second},
                  {"build_seconds", row.build_seconds},
                  {"bytes", row.bytes}},
@@ -306,6 +307,12 @@ void run(const TraceCommandOptions& options) {
     throw std::invalid_argument("--against cgal: what is compared is --query all and --doubles");
   if (options.parts != "1" && (options.doubles || !options.queries.empty()))
     throw std::invalid_argument("--parts: of nearest hits and of any, in floats");
+  const bool skips_alike = options.queries.empty() && !options.doubles && parsed.tests.size() == 1 &&
+                           parsed.tests[0] == TriangleTest::exact && !parsed.against_scene &&
+                           !parsed.against_user;
+  if (parsed.skips && !skips_alike)
+    throw std::invalid_argument(
+        "--skip: of nearest hits and of any, in floats, by the test exact, beside Embree");
   if (options.offset != 0 && !options.doubles) throw std::invalid_argument("--offset: needs --doubles");
   if (options.doubles && (!options.queries.empty() || options.threads != 1))
     throw std::invalid_argument("--doubles: of nearest hits and of any, on one thread");
@@ -356,6 +363,8 @@ void add_trace_command(CLI::App& tool) {
              "order of pixels; secondary rays follow them");
   add_numbers(*command, "--batch", trace.batches, {0, max_batch},
               "rays in each call of ours, such as 65536,4096,256; 0: all at once");
+  command->add_flag("--skip", trace.skips,
+                    "leave out the triangle that a secondary ray begins on, as renderers do");
   command->add_flag("--warm", trace.warm,
                     "trace the rays once more before each clock, so that caches hold the contender's tree");
   command->add_flag("--doubles", options->doubles,

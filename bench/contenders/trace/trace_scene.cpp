@@ -207,7 +207,8 @@ class Tracer {
       for (const TraversalMode mode : options_.modes)
         for (const std::size_t batch : options_.batches) {
           trace.test = test, trace.mode = mode;
-          entries.push_back(our_entry(our_contender(tree(), trace, batch), question, path, test, batch));
+          entries.push_back(
+              our_entry(our_contender(tree(), trace, batch, options_.skips), question, path, test, batch));
           if (options_.counts) count_ours(entries.back(), question, trace);
         }
   }
@@ -216,7 +217,7 @@ class Tracer {
     trace.path = &path;
     for (const TriangleTest test : options_.tests) {
       trace.test = test;
-      entries.push_back(our_entry(our_caller(tree(), trace), question, path, test, 1));
+      entries.push_back(our_entry(our_caller(tree(), trace, options_.skips), question, path, test, 1));
     }
   }
   void add_scenes(std::vector<Entry>& entries, const Question& question, const Path& path) const {

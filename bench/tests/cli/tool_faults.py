@@ -22,6 +22,7 @@ FAULTS = {
         ("--against", "trace hall --against scene --tree kdtree"),
         ("--against", "trace hall --against user --test watertight"),
         ("--parts groups 1000000", "trace hall --parts 0"), ("--parts", "trace hall --parts 2 --doubles"),
+        ("--skip exact", "trace hall --skip --doubles"), ("--skip exact", "trace hall --skip --test watertight"),
         ("median kdtree", "trace hall --tree kdtree --build median"), ("midpoint bvh", "trace hall --build midpoint"),
         ("bvh kdtree", "trace hall --tree octree"), ("--tree auto", "trace hall --tree auto --build median"),
         ("watertight plane_edges", "kernels --test best"), ("hardware goldschmidt", "roots --method hardware,best"),

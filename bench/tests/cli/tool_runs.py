@@ -73,6 +73,8 @@ RUNS = [
      ("hall.png", 96, 64), "same bytes", lambda rows: values(of(rows, rays="primary"), "hits") == {96 * 64}),
     ("trace hall --size 32x24 --mode single,call --path all --rays primary,shadow --test exact,watertight --warm", None,
      "", lambda rows: calls_are_batches(rows) and values(rows, "warm") == {True}),
+    ("trace hall --size 24x16 --mode single,automatic,call --rays primary,shadow,diffuse --batch 100,0 --skip", None,
+     "", lambda rows: calls_are_batches(rows) and values(rows, "skips") == {True}),
     ("trace hall --query all,crossings,count,kept --size 24x16 --against cgal", None, "", lambda rows:
      right(rows, contender="raylanes") and values(rows, "query") ==
      {"all", "crossings", "count", *(f"kept, {share} % rejected" for share in (0, 50, 90))}),
