@@ -1,10 +1,8 @@
 #include "table/roots.hpp"
 
-#include <array>
+#include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
-#include <cstring>
 
 #include <raylanes/paths.hpp>
 #include <raylanes/roots.hpp>
@@ -53,41 +51,6 @@ void run_sqrt(const RootKernels& roots, SqrtMethod method, std::span<const float
   run("sqrt", fastest_sqrt(roots, kept, splits), x, y);
 }
 
-// Arrays of so few numbers go through the instruction, with every accuracy, before they would reach a kernel.
-constexpr std::size_t short_array = 16;
-
-template <std::size_t count, class T>
-std::array<T, count> instruction_roots(const T* x) {
-  std::array<T, count> roots;
-  for (std::size_t i = 0; i < count; ++i) roots[i] = std::sqrt(x[i]);
-  return roots;
-}
-
-// From count to 2·count of them: the first and the last, which may be the same. y may be x.
-template <std::size_t count, class T>
-void store_instruction_roots(const T* x, T* y, std::size_t n) {
-  const auto first = instruction_roots<count>(x), last = instruction_roots<count>(x + n - count);
-  std::memcpy(y, first.data(), sizeof first);
-  std::memcpy(y + n - count, last.data(), sizeof last);
-}
-
-// Whether the arrays are short: then y has the roots.
-template <class T>
-bool sqrt_of_short(std::span<const T> x, std::span<T> y) {
-  const std::size_t n = x.size();
-  require_size("sqrt", "y", y.size(), "x", n);
-  if (n > short_array) return false;
-  if (n > 8)
-    store_instruction_roots<8>(x.data(), y.data(), n);
-  else if (n >= 4)
-    store_instruction_roots<4>(x.data(), y.data(), n);
-  else if (n >= 2)
-    store_instruction_roots<2>(x.data(), y.data(), n);
-  else if (n == 1)
-    y[0] = std::sqrt(x[0]);
-  return true;
-}
-
 const RootKernels& roots_of(const Path* path) {
   return kernels_of(checked_path(path)).roots;
 }
@@ -117,40 +80,45 @@ SqrtMethod serving_sqrt(const RootKernels& roots, Accuracy accuracy, bool splits
   return has_faster && splits_512_bits ? SqrtMethod::goldschmidt_beside_hardware : usual;
 }
 
-namespace {
-
-// Out of line: short arrays need not save registers for it.
-[[gnu::noinline]] void sqrt_within(const RootKernels& roots, Accuracy accuracy, std::span<const float> x,
-                                   std::span<float> y) {
-  run_sqrt(roots, serving_sqrt(roots, accuracy, machine_splits_512_bits()), x, y);
+Accuracy detail::accuracy_within(double relative_error, double epsilon) {
+  // Floats get 1 ULP for 2^-44.
+  for (std::size_t i = accuracies.size(); i-- > 0;) {
+    const AccuracyInfo& info = accuracies[i];
+    const double bound =
+        info.max_ulp > 0 ? info.max_ulp * epsilon : std::max(info.max_relative_error, epsilon);
+    if (bound <= relative_error) return info.accuracy;
+  }
+  throw std::invalid_argument("accuracy: a relative error of " + text_of(relative_error) +
+                              " is too small; the least is " + text_of(epsilon / 2));
 }
-
-}  // namespace
 
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
   const RootKernels& roots = roots_of(path);
-  checked_row("sqrt", "accuracy", roots.sqrt.within, accuracy);
-  if (!sqrt_of_short(x, y)) sqrt_within(roots, accuracy, x, y);
+  if (few::sqrt_of_few(x, y, accuracy)) return;
+  run_sqrt(roots, serving_sqrt(roots, accuracy, machine_splits_512_bits()), x, y);
 }
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
-  const auto& rows = roots_of(path).double_sqrt;
-  const DoubleSqrtMethod method = checked_row("sqrt", "accuracy", rows.within, accuracy);
-  if (!sqrt_of_short(x, y)) run("sqrt", rows, method, x, y);
+  const RootKernels& roots = roots_of(path);
+  if (!few::sqrt_of_few(x, y, accuracy)) run("sqrt", roots.double_sqrt, accuracy, x, y);
 }
 void rsqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
-  run("rsqrt", roots_of(path).rsqrt, accuracy, x, y);
+  const RootKernels& roots = roots_of(path);
+  if (!few::rsqrt_of_few(x, y, accuracy)) run("rsqrt", roots.rsqrt, accuracy, x, y);
 }
 void rsqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
   if (accuracy == Accuracy::correctly_rounded)
     throw std::invalid_argument(
         "rsqrt: accuracy correctly_rounded is not offered for double; the tightest is within_1_ulp");
-  run("rsqrt", roots_of(path).double_rsqrt, accuracy, x, y);
+  const RootKernels& roots = roots_of(path);
+  if (!few::rsqrt_of_few(x, y, accuracy)) run("rsqrt", roots.double_rsqrt, accuracy, x, y);
 }
 void reciprocal(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path) {
-  run("reciprocal", roots_of(path).reciprocal, accuracy, x, y);
+  const RootKernels& roots = roots_of(path);
+  if (!few::reciprocal_of_few(x, y, accuracy)) run("reciprocal", roots.reciprocal, accuracy, x, y);
 }
 void reciprocal(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path) {
-  run("reciprocal", roots_of(path).double_reciprocal, accuracy, x, y);
+  const RootKernels& roots = roots_of(path);
+  if (!few::reciprocal_of_few(x, y, accuracy)) run("reciprocal", roots.double_reciprocal, accuracy, x, y);
 }
 
 void sqrt(std::span<const float> x, std::span<float> y, SqrtMethod method, const Path* path) {

@@ -15,6 +15,14 @@ raylanes_status roots(const T* x, T* y, std::size_t count, std::int32_t accuracy
   });
 }
 
+template <class T>
+raylanes_status write_accuracy(double relative_error, std::int32_t* accuracy) {
+  return status_of([&] {
+    require_pointer("accuracy", accuracy);
+    *accuracy = static_cast<std::int32_t>(accuracy_within<T>(relative_error));
+  });
+}
+
 }  // namespace
 
 extern "C" {
@@ -47,6 +55,14 @@ raylanes_status raylanes_force_path(const char* name) {
     else
       force_path(name);
   });
+}
+
+raylanes_status raylanes_accuracy_within(double relative_error, std::int32_t* accuracy) {
+  return write_accuracy<float>(relative_error, accuracy);
+}
+
+raylanes_status raylanes_accuracy_withind(double relative_error, std::int32_t* accuracy) {
+  return write_accuracy<double>(relative_error, accuracy);
 }
 
 raylanes_status raylanes_sqrt(const float* x, float* y, std::size_t count, std::int32_t accuracy,

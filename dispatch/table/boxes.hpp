@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include <raylanes/boxes.hpp>
+#include <raylanes/prepared_ray.hpp>
 
 #include "rows.hpp"
 
@@ -19,6 +20,10 @@ struct BoxRow {
   void (*intervals_of_rays)(const RayArrays& rays, const float* box, LaneBits active, std::uint8_t* bits,
                             float* entry, float* exit);
 };
-struct BoxKernels : Rows<BoxRow, std::size(box_tests)> {};
+struct BoxKernels : Rows<BoxRow, std::size(box_tests)> {
+  // For PreparedRay, by the test conservative.
+  void (*prepare)(const Ray& ray, detail::RayAmongBoxes& prepared);
+  detail::HitsAmongBoxes hits;
+};
 
 }  // namespace raylanes

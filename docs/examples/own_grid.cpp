@@ -1,6 +1,5 @@
 // A structure of one's own: spheres in a grid of tiles. One call asks the boxes of all tiles, one each tile met.
 #include "common.hpp"
-
 using namespace example;
 constexpr std::size_t side = 16, each = 16;  // tiles along x and y, and spheres in one
 constexpr float radius = 0.03f;
@@ -26,20 +25,21 @@ Tiles make_tiles() {
 // Tiles in the order in which the ray enters them, until the best hit is nearer than the next.
 raylanes::Hit closest(const Tiles& tiles, const raylanes::Ray& ray) {
   const auto &lo = tiles.lo, &hi = tiles.hi, &c = tiles.centre;
-  std::uint8_t bits[side * side / 8];
   float entry[side * side], exit[side * side];
   const raylanes::BoxArrays boxes{
       {&lo[0][0], &lo[1][0], &lo[2][0]}, {&hi[0][0], &hi[1][0], &hi[2][0]}, side * side};
+  std::uint8_t bits[side * side / 8];
   intervals(ray, boxes, bits, entry, exit);
   std::vector<std::pair<float, std::size_t>> met;  // a tile that is missed is entered at infinity
   for (std::size_t i = 0; i < side * side; ++i) met.emplace_back(entry[i], i * each);
   std::ranges::sort(met);
+  const raylanes::PreparedRay prepared(ray);
   raylanes::Hit best;
   for (const auto& [entered, first] : met) {
     if (entered >= best.t) break;
     const raylanes::SphereArrays spheres{
         {&c[0][first], &c[1][first], &c[2][first]}, &tiles.squared_radius[first], each};
-    const raylanes::Hit hit = closest_hit(ray, spheres);
+    const raylanes::Hit hit = closest_hit(prepared, spheres);
     if (hit.t < best.t) best = hit, best.primitive += static_cast<std::uint32_t>(first);
   }
   return best;

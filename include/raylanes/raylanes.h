@@ -281,6 +281,12 @@ RAYLANES_STATUS raylanes_bvhd_winding_numbers(const raylanes_bvhd* tree, const v
 // Roots of arrays: x and y are the same array or do not overlap. NaN, infinities, zeros and negative numbers give what
 // IEEE 754 says. `accuracy` is a raylanes_accuracy, `path` the name of an ISA path or NULL.
 
+/// Writes the loosest raylanes_accuracy that keeps floats within a relative error. An error below 2^-24, which rounding
+/// has, is an invalid argument.
+RAYLANES_STATUS raylanes_accuracy_within(double relative_error, int32_t* accuracy);
+/// Writes the loosest raylanes_accuracy that keeps doubles within a relative error, of 2^-53 or more.
+RAYLANES_STATUS raylanes_accuracy_withind(double relative_error, int32_t* accuracy);
+
 /// Computes y[i] = √x[i].
 RAYLANES_STATUS raylanes_sqrt(const float* x, float* y, size_t n, int32_t accuracy, const char* path);
 /// Computes y[i] = √x[i] of doubles.

@@ -12,6 +12,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/prepared_ray.hpp>
 #include <raylanes/progress.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/ray_calls.hpp>

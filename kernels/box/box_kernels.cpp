@@ -96,6 +96,66 @@ template <class Test>
   });
 }
 
+// A ray among few boxes: the bits and entries of intervals_of_boxes() by ConservativeSlabs.
+void prepare(const Ray& ray, detail::RayAmongBoxes& prepared) {
+  Ray any_end = ray;  // the end may change
+  any_end.tmax = std::numeric_limits<float>::infinity();
+  const bool valid = is_valid(any_end);
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const float inverse = 1.0f / ray.direction[axis];
+    prepared.origin[axis] = ray.origin[axis];
+    prepared.inverse[axis] = inverse;
+    prepared.far_inverse[axis] = inverse * conservative_far_factor;
+    const std::uint32_t is_negative = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
+    prepared.near[axis] = axis + 3 * is_negative;
+    prepared.far[axis] = axis + 3 * (1 - is_negative);
+  }
+  prepared.tmin = valid ? ray.tmin : std::numeric_limits<float>::quiet_NaN();
+  prepared.tmax = ray.tmax;
+}
+
+// Boxes from the first on: N of them, or as many as `count` says.
+template <int N, bool is_whole>
+inline std::uint32_t hits_from(const detail::RayAmongBoxes& ray, Soa arrays, std::size_t first,
+                               std::size_t count, float* entry) {
+  using V = Floats<N>;
+  const auto load = [&](std::uint32_t k) {
+    if constexpr (is_whole) return V::load(arrays[k] + first);
+    return V::load(arrays[k] + first, count, V(std::numeric_limits<float>::quiet_NaN()));
+  };
+  V tmin(ray.tmin), tmax(ray.tmax), infinity(std::numeric_limits<float>::infinity());
+  FloatMask<N> is_box = load(0) <= load(3);
+  is_box = is_box & (load(1) <= load(4)) & (load(2) <= load(5));
+  for (int axis = 0; axis < 3; ++axis) {
+    V origin(ray.origin[axis]);
+    tmin = max((load(ray.near[axis]) - origin) * V(ray.inverse[axis]), tmin);
+    tmax = min((load(ray.far[axis]) - origin) * V(ray.far_inverse[axis]), tmax);
+  }
+  FloatMask<N> hit = (tmin <= tmax) & is_box;
+  if (entry != nullptr) {
+    V entered = select(hit, tmin, infinity);
+    if constexpr (is_whole)
+      entered.store(entry + first);
+    else
+      entered.store(entry + first, count);
+  }
+  return bits(hit) << first;
+}
+
+[[gnu::flatten]] std::uint32_t hits_among_boxes(const detail::RayAmongBoxes& ray, const BoxArrays& boxes,
+                                                float* entry) {
+  static_assert(offsetof(BoxArrays, hi) == sizeof boxes.lo);
+  constexpr int most = W < 8 ? W : 8, few = W < 4 ? W : 4;
+  Soa arrays = reinterpret_cast<Soa>(&boxes);
+  const std::size_t n = boxes.size;
+  std::size_t i = 0;
+  std::uint32_t hits = 0;
+  for (; n - i >= most; i += most) hits |= hits_from<most, true>(ray, arrays, i, most, entry);
+  if (most > few && n - i >= few) hits |= hits_from<few, true>(ray, arrays, i, few, entry), i += few;
+  if (i < n) hits |= hits_from<few, false>(ray, arrays, i, n - i, entry);
+  return hits;
+}
+
 // One box under rays.
 struct BoxUnderRays {
   Floats<W> lo[3], hi[3];
@@ -146,11 +206,16 @@ struct MakeRow {
   }
 };
 
+constexpr BoxKernels all_kernels(BoxKernels rows) {
+  rows.prepare = prepare, rows.hits = hits_among_boxes;
+  return rows;
+}
+
 using BoxTests = TestList<ConservativeSlabs, PlainSlabs, DirectionalSlabs>;
 static_assert(is_complete(BoxTests{}, box_tests),
               "each box test needs one type, with the numbers that it reads");
 
 }  // namespace
 
-RAYLANES_UNIT_TABLE(BoxKernels, boxes, rows_of<BoxKernels>(BoxTests{}, MakeRow{}))
+RAYLANES_UNIT_TABLE(BoxKernels, boxes, all_kernels(rows_of<BoxKernels>(BoxTests{}, MakeRow{})))
 }  // namespace raylanes

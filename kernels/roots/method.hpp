@@ -157,5 +157,11 @@ inline V newton_step(const V& x, const V& s, const V& half_y, double half) {
   return multiply_add<Grade::fast>(x, subtract_product<Grade::fast>(constant<V>(half), s, half_y), x);
 }
 
+// r + 1.5 r²: 1/√(1 − 2r) − 1 but for 2.5 r³ and less. The step of third order.
+template <class V>
+inline V third_order(const V& r) {
+  return multiply_add<Grade::fast>(constant<V>(1.5) * r, r, r);
+}
+
 }  // namespace
 }  // namespace raylanes

@@ -139,6 +139,19 @@ struct ScaledReciprocalRoot : ReciprocalRootBase {
   }
 };
 
+// The second step of third order where the estimate is rough.
+struct ScaledReciprocalRootInTwoSteps : ReciprocalRootBase {
+  static constexpr DoubleRsqrtMethod double_id = DoubleRsqrtMethod::estimate_two_steps;
+  static constexpr bool keeps_nan = true;
+  template <class V>
+  static V apply(const V& a) {
+    if constexpr (estimates_have_14_bits<double>) return ScaledReciprocalRoot<2>::apply(a);
+    const V y = ScaledReciprocalRoot<1>::apply(a);
+    const V r = subtract_product<Grade::fast>(constant<V>(0.5), a * y, half_of(y));
+    return multiply_add<Grade::fast>(y, third_order(r), y);
+  }
+};
+
 struct ScaledReciprocalRootCorrected : ReciprocalRootBase {
   static constexpr DoubleRsqrtMethod double_id = DoubleRsqrtMethod::corrected;
   static constexpr bool keeps_nan = true;

@@ -117,7 +117,7 @@ constexpr Row<double, DoubleSqrtMethod> double_sqrt_rows[] = {
 constexpr Row<double, DoubleRsqrtMethod> double_rsqrt_rows[] = {
     doubles<ScaledReciprocalRoot<0>, threes>(),
     doubles<ScaledReciprocalRoot<1>, threes>(),
-    doubles<ScaledReciprocalRoot<2>, twos>(),
+    doubles<ScaledReciprocalRootInTwoSteps, twos>(),
     doubles<ScaledReciprocalRootCorrected, twos>(),
     {ReciprocalRootHardware::double_id, plain_array_of<ReciprocalRootHardware, double>},
 };
@@ -143,37 +143,42 @@ using DR = DoubleReciprocalMethod;
 
 // With one lane nothing is faster than the instruction.
 constexpr Choice<S> sqrt_choice =
-    native_lanes == 1 ? Choice<S>{{S::hardware, S::hardware, S::hardware, S::hardware, S::hardware,
-                                   S::hardware, S::hardware}}
-                      : Choice<S>{{S::goldschmidt_beside_hardware, S::estimate_two_residuals_beside_hardware,
-                                   S::estimate_two_residuals_beside_hardware,
-                                   S::estimate_residual_beside_hardware, S::estimate_residual_beside_hardware,
-                                   S::estimate_beside_hardware, S::estimate_beside_hardware}};
-constexpr Choice<Q> rsqrt_choice{{Q::in_double, Q::corrected, Q::corrected, Q::estimate_newton,
-                                  Q::estimate_newton, Q::estimate, Q::estimate}};
+    native_lanes == 1
+        ? Choice<S>{{S::hardware, S::hardware, S::hardware, S::hardware, S::hardware, S::hardware,
+                     S::hardware, S::hardware}}
+        : Choice<S>{{S::goldschmidt_beside_hardware, S::estimate_two_residuals_beside_hardware,
+                     S::estimate_two_residuals_beside_hardware, S::estimate_two_residuals_beside_hardware,
+                     S::estimate_residual_beside_hardware, S::estimate_residual_beside_hardware,
+                     S::estimate_beside_hardware, S::estimate_beside_hardware}};
+constexpr Choice<Q> rsqrt_choice{{Q::in_double, Q::corrected, has_fma ? Q::corrected : Q::hardware,
+                                  Q::corrected, Q::estimate_newton, Q::estimate_newton, Q::estimate,
+                                  Q::estimate}};
 // Without fused multiply-add the rounding of 1 − a y takes what 2^-22 leaves.
 constexpr R two_to_minus_22 = has_fma ? R::estimate_residual : R::hardware;
-constexpr Choice<R> reciprocal_choice{
-    {R::hardware, R::hardware, R::hardware, two_to_minus_22, R::estimate_newton, R::estimate, R::estimate}};
+constexpr Choice<R> reciprocal_choice{{R::hardware, R::hardware, R::hardware, R::hardware, two_to_minus_22,
+                                       R::estimate_newton, R::estimate, R::estimate}};
 
-// Doubles: the way to the estimate and back is long by way of float, too long for 2^-44. It is longest where
+// Doubles: the way to the estimate and back is long by way of float, too long for 2 ULP. It is longest where
 // AVX has no integers as wide as its floats. The first reciprocal root is not offered (see roots.hpp).
 constexpr Choice<DS> double_sqrt_choice =
-    estimates_span_doubles ? Choice<DS>{{DS::hardware, DS::hardware, DS::goldschmidt, DS::estimate_residual,
-                                         DS::estimate_residual, DS::estimate, DS::estimate}}
-    : has_fma              ? Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::estimate_residual,
-                                         DS::estimate_residual, DS::polynomial_2, DS::classic_0}}
-                           : Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::hardware, DS::hardware,
-                            native_lanes == 1 ? DS::hardware : DS::polynomial_2, DS::classic_0}};
-constexpr Choice<DQ> double_rsqrt_choice{
-    {DQ::corrected, DQ::corrected, has_fma ? DQ::estimate_two_newtons : DQ::hardware, DQ::estimate_newton,
-     DQ::estimate_newton, DQ::estimate, DQ::estimate}};
+    estimates_span_doubles
+        ? Choice<DS>{{DS::hardware, DS::goldschmidt, DS::goldschmidt, DS::goldschmidt, DS::estimate_residual,
+                      DS::estimate_residual, DS::estimate, DS::estimate}}
+    : has_fma
+        ? Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::hardware, DS::estimate_residual,
+                      DS::estimate_residual, DS::polynomial_2, DS::classic_0}}
+        : Choice<DS>{{DS::hardware, DS::hardware, DS::hardware, DS::hardware, DS::hardware, DS::hardware,
+                      native_lanes == 1 ? DS::hardware : DS::polynomial_2, DS::classic_0}};
+constexpr DQ within_2_ulp = has_fma ? DQ::estimate_two_steps : DQ::hardware;
+constexpr Choice<DQ> double_rsqrt_choice{{DQ::corrected, DQ::corrected, within_2_ulp, within_2_ulp,
+                                          DQ::estimate_newton, DQ::estimate_newton, DQ::estimate,
+                                          DQ::estimate}};
 constexpr DR two_to_minus_44 = estimates_span_doubles ? DR::estimate_two_residuals : DR::hardware;
 constexpr Choice<DR> double_reciprocal_choice =
-    has_fma ? Choice<DR>{{DR::hardware, DR::hardware, two_to_minus_44, DR::estimate_residual,
+    has_fma ? Choice<DR>{{DR::hardware, DR::hardware, DR::hardware, two_to_minus_44, DR::estimate_residual,
                           DR::estimate_residual, DR::estimate, DR::estimate}}
             : Choice<DR>{{DR::hardware, DR::hardware, DR::hardware, DR::hardware, DR::hardware, DR::hardware,
-                          DR::hardware}};
+                          DR::hardware, DR::hardware}};
 
 template <class T, class Method, std::size_t Count>
 constexpr RootRows<T, Method, Count> rows_of(const Row<T, Method> (&rows)[Count],

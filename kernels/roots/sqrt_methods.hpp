@@ -157,8 +157,9 @@ struct ScaledEstimateResidual : ScaledResidualBase {
 
 // Refines s ≈ √a and h ≈ 1/(2√a) side by side, then takes the residual of s.
 template <class V>
-inline V goldschmidt_root(const V& s, const V& h, const V& a, double half) {
-  const V r = subtract_product<Grade::fast>(constant<V>(half), s, h);
+inline V goldschmidt_root(const V& s, const V& h, const V& a, double half, bool in_third_order = false) {
+  V r = subtract_product<Grade::fast>(constant<V>(half), s, h);
+  if (in_third_order) r = third_order(r);
   const V s1 = multiply_add<Grade::fast>(s, r, s);
   const V h1 = multiply_add<Grade::fast>(h, r, h);
   return residual_step(s1, h1, a);
@@ -169,7 +170,8 @@ struct ScaledGoldschmidt : ScaledResidualBase {
   template <class V>
   static V apply(const V& a) {
     const V y = scaled_rsqrt_estimate(a);
-    return goldschmidt_root(a * y, half_of(y), a, 0.5 + newton_shift<V>);
+    constexpr bool is_rough = !estimates_have_14_bits<double>;
+    return goldschmidt_root(a * y, half_of(y), a, is_rough ? 0.5 : 0.5 + newton_shift<V>, is_rough);
   }
 };
 

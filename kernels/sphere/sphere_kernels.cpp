@@ -15,20 +15,28 @@ namespace {
 
 // --- 1 ray × N spheres
 
-// The ray counted in its own scale, computed in one lane; what is not valid hits nothing.
-inline ScaledRay scaled(const Ray& ray) {
+// The ray and its own scale, computed in one lane; what is not valid hits nothing.
+inline detail::RayAmongSpheres in_scale(const Ray& ray) {
   Floats<1> direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
   DirectionScale<Floats<1>> s = scale_of(direction);
+  detail::RayAmongSpheres prepared{ray, s.scale.raw, s.unit.raw, s.square.raw, s.inverse_square.raw};
+  if (!is_valid(ray)) prepared.ray.tmin = prepared.ray.tmax = std::numeric_limits<float>::quiet_NaN();
+  return prepared;
+}
+inline ScaledRay scaled(const detail::RayAmongSpheres& prepared) {
+  const Ray& ray = prepared.ray;
   Floats<W> o[3], d[3];
   broadcast(ray.origin.data(), o);
   broadcast(ray.direction.data(), d);
-  const Segment<Floats<W>> segment = broadcast_segment(ray);
-  return {
-      o,
-      d,
-      segment.tmin,
-      segment.tmax,
-      {in_all_lanes(s.scale), in_all_lanes(s.unit), in_all_lanes(s.square), in_all_lanes(s.inverse_square)}};
+  return {o,
+          d,
+          Floats<W>(ray.tmin),
+          Floats<W>(ray.tmax),
+          {Floats<W>(prepared.scale), Floats<W>(prepared.unit), Floats<W>(prepared.square),
+           Floats<W>(prepared.inverse_square)}};
+}
+inline ScaledRay scaled(const Ray& ray) {
+  return scaled(in_scale(ray));
 }
 
 struct SphereSoa {
@@ -77,14 +85,12 @@ template <class Test>
 
 // The first of the two distances that lies in the segment, of those spheres that the segment meets at all.
 template <class Test>
-[[gnu::flatten]] void closest_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
-                                         Hit& nearest) {
-  nearest = Hit();
-  if (!is_valid(ray)) return;
+[[gnu::flatten, gnu::noinline]] void closest_among_spheres(const detail::RayAmongSpheres& ray, Soa spheres,
+                                                           std::size_t n, LaneBits active, Hit& nearest) {
   ScaledRay prepared = scaled(ray);
   SphereSoa soa(spheres);
-  Floats<W> tmin(finite_tmin(ray.tmin));
-  LaneBests best(ray.tmax);
+  Floats<W> tmin(finite_tmin(ray.ray.tmin));
+  LaneBests best(ray.ray.tmax);
   for_each_slice(0, n, active, [&](const auto& slice) {
     Floats<W> sphere[4];
     soa.load(slice, sphere);
@@ -94,6 +100,11 @@ template <class Test>
     best.keep(d.hit & Nearer<Floats<W>>{tmin, best.t}.holds(t), t, slice.i);
   });
   nearest = best.nearest();
+}
+template <class Test>
+[[gnu::flatten]] void closest_of_spheres(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
+                                         Hit& nearest) {
+  closest_among_spheres<Test>(in_scale(ray), spheres, n, active, nearest);
 }
 
 // Decides within the same bound as perpendicular, not with the same bits.
@@ -206,6 +217,13 @@ constexpr SphereKernels all_kernels() {
   all.line_of_spheres[static_cast<std::size_t>(Grade::reproducible)] = line_of_spheres<Grade::reproducible>;
   all.line_of_spheres[static_cast<std::size_t>(Grade::fast)] =
       line_of_spheres < has_fma ? Grade::fast : Grade::reproducible > ;
+  all.prepare = [](const Ray& ray, detail::RayAmongSpheres& prepared) {
+    Ray any_end = ray;  // the end may change
+    any_end.tmax = std::numeric_limits<float>::infinity();
+    prepared = in_scale(any_end);
+    prepared.ray.tmax = ray.tmax;
+  };
+  all.closest_among = closest_among_spheres<PerpendicularSphere<Grade::reproducible>>;
   return all;
 }
 

@@ -76,7 +76,7 @@ static void test_roots_of_floats(void) {
   REFUSED(raylanes_sqrt(odd, y, 1, 0, NULL), "x");
   REFUSED(raylanes_reciprocal(x, y, SIZE_MAX, 0, NULL), "address space");
   REFUSED(raylanes_reciprocal(x, y, (size_t)PTRDIFF_MAX / 4 + 1, 0, NULL), "address space");
-  REFUSED(raylanes_sqrt(x, y, 1, 7, NULL), "accuracy");
+  REFUSED(raylanes_sqrt(x, y, 1, 8, NULL), "accuracy");
   REFUSED(raylanes_sqrt(x, y, 1, -1, NULL), "accuracy");
   REFUSED(raylanes_rsqrt(x, y, 1, 256, NULL), "accuracy");
   REFUSED(raylanes_reciprocal(x, y, 1, 0, ""), "path");
@@ -98,7 +98,20 @@ static void test_roots_of_doubles(void) {
   REFUSED(raylanes_reciprocald(x, NULL, 3, RAYLANES_WITHIN_1_ULP, NULL), "y");
 }
 
+static void test_accuracies(void) {
+  int32_t accuracy = -1;
+  GOOD(raylanes_accuracy_within(1e-7, &accuracy));
+  EXPECT(accuracy == RAYLANES_CORRECTLY_ROUNDED);
+  GOOD(raylanes_accuracy_withind(1e-7, &accuracy));
+  EXPECT(accuracy == RAYLANES_WITHIN_2_TO_MINUS_44);
+  REFUSED(raylanes_accuracy_within(1e-8, &accuracy), "5.960464477539063e-08");
+  REFUSED(raylanes_accuracy_withind(NAN, &accuracy), "nan");
+  REFUSED(raylanes_accuracy_within(1, NULL), "accuracy");
+  EXPECT(accuracy == RAYLANES_WITHIN_2_TO_MINUS_44);
+}
+
 void test_roots(void) {
   test_roots_of_floats();
   test_roots_of_doubles();
+  test_accuracies();
 }

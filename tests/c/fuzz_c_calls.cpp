@@ -294,12 +294,12 @@ void ask_roots(Bytes& bytes, auto of_c, auto of_cpp) {
   std::vector<T> values(x.count), expected = y.get();
   for (T& value : values) value = bytes.number<T>();
   x.put(values);
-  const auto accuracy = static_cast<std::int32_t>(bytes.below(9)) - 1;
+  const auto accuracy = static_cast<std::int32_t>(bytes.below(10)) - 1;
   const char* const path = arguments.path();
   const std::size_t n = arguments.count(x.count);
   const void* const from = arguments.first(x);
   void* const to = arguments.first(y);
-  bool is_right = arguments.are_right() && accuracy >= 0 && accuracy < 7;
+  bool is_right = arguments.are_right() && accuracy >= 0 && accuracy < 8;
   const raylanes_status status = of_c(static_cast<const T*>(from), static_cast<T*>(to), n, accuracy, path);
   try {
     if (is_right)

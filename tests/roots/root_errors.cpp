@@ -39,10 +39,10 @@ TEST(RootFunctions, refuse_sizes_that_differ) {
 }
 
 TEST(RootFunctions, refuse_accuracies_and_methods_that_do_not_exist) {
-  EXPECT_EQ((refusal<float, Accuracy>(sqrt, static_cast<Accuracy>(7))),
-            "sqrt: accuracy 7 does not exist; allowed are 0 to 6");
+  EXPECT_EQ((refusal<float, Accuracy>(sqrt, static_cast<Accuracy>(8))),
+            "sqrt: accuracy 8 does not exist; allowed are 0 to 7");
   EXPECT_EQ((refusal<double, Accuracy>(reciprocal, static_cast<Accuracy>(255))),
-            "reciprocal: accuracy 255 does not exist; allowed are 0 to 6");
+            "reciprocal: accuracy 255 does not exist; allowed are 0 to 7");
   EXPECT_EQ((refusal<float, SqrtMethod>(sqrt, static_cast<SqrtMethod>(15))),
             "sqrt: method 15 does not exist; allowed are 0 to 14");
   EXPECT_NE((refusal<float, RsqrtMethod>(rsqrt, static_cast<RsqrtMethod>(rsqrt_methods.size()))), "");

@@ -1,5 +1,6 @@
 // Rows of roots of floats and of doubles: how they are timed, how they compare, and the table of accuracies.
-// A row has path(), function(), method(), max_ulp(), max_relative_error(), serves(accuracy), and RootSpeed's members.
+// A row has path(), function(), method(), max_ulp(), max_ulp_promised(), max_relative_error(), serves(accuracy), and
+// RootSpeed's members.
 #pragma once
 
 #include <algorithm>
@@ -67,6 +68,9 @@ void rank_roots(std::vector<Row>& rows) {
 // So many that an error above half an ULP does not look like half an ULP: 0.5 is correctly rounded, 0.50001 is not.
 int digits_of(double max_ulp);
 
+// A relative error as "2^-11.58"; "0" for none.
+std::string power_of_two(double relative_error);
+
 // The time and the error of each accuracy, by ISA path and function, the tightest one first.
 template <class Row>
 RowTable table_of_accuracies(const std::vector<Row>& rows) {
@@ -87,8 +91,9 @@ RowTable table_of_accuracies(const std::vector<Row>& rows) {
             .add("ns", "", row.nanoseconds())
             .add("× hardware", "", row.ratio_to_hardware)
             .add("max ULP", "", row.max_ulp(), digits_of(row.max_ulp()))
+            .add("promised", "", row.max_ulp_promised(), digits_of(row.max_ulp_promised()))
             .add("served by", "", std::string(row.method()))
-            .add("max rel. error", "", row.max_relative_error());
+            .add("max rel. error", "", power_of_two(row.max_relative_error()));
       }
   return table;
 }

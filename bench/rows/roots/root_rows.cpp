@@ -1,6 +1,8 @@
 #include "root_rows.hpp"
 
 #include <bit>
+#include <cmath>
+#include <cstdio>
 
 namespace raylanes::bench {
 namespace {
@@ -15,6 +17,12 @@ int digits_of(double max_ulp) {
   int digits = 4;
   for (double unit = 1e-4; max_ulp > 0.5 && max_ulp < 0.5 + unit / 2 && digits < 9; unit /= 10) ++digits;
   return digits;
+}
+
+std::string power_of_two(double relative_error) {
+  char text[16] = "0";
+  if (relative_error > 0) std::snprintf(text, sizeof text, "2^%.2f", std::log2(relative_error));
+  return text;
 }
 
 std::vector<std::string> RootResult::accuracies_served() const {
@@ -36,7 +44,6 @@ RowTable table_of(const std::vector<RootResult>& results) {
     table.begin({{"grade", grade_names[r.row.promise().reproducible ? 0 : 1]},
                  {"isa", r.row.path->isa},
                  {"inputs", a.inputs},
-                 {"max_ulp_promised", r.row.max_ulp_promised()},
                  {"max_relative_error", a.max_relative_error()},
                  {"correctly_rounded_normal", share(a.normal_correctly_rounded, a.normal_inputs)},
                  {"unchecked", r.row.promise().unchecked},
@@ -47,6 +54,7 @@ RowTable table_of(const std::vector<RootResult>& results) {
         .add("method", "method", std::string(r.row.promise().name))
         .add("path", "path", r.row.path->name)
         .add("max ULP", "max_ulp", a.max_ulp, digits_of(a.max_ulp))
+        .add("promised", "max_ulp_promised", r.max_ulp_promised(), digits_of(r.max_ulp_promised()))
         .add("ns", "", r.nanoseconds())
         .add("× hardware", "ratio_to_hardware", r.ratio_to_hardware)
         .add("front", "pareto", r.pareto, r.pareto ? "*" : "")
@@ -54,6 +62,7 @@ RowTable table_of(const std::vector<RootResult>& results) {
         .add("rounded", "correctly_rounded", share(a.positive_correctly_rounded, a.positive_inputs), 6)
         .add("max ULP at", "max_ulp_at", hexadecimal("0x%08llx", a.max_ulp_at))
         .add("disorder", "monotony_violations", std::size_t{a.monotony_violations})
+        .add("max rel. error", "", power_of_two(a.max_relative_error()))
         .add("rel. error from", "least_relative_error", a.least_relative_error)
         .add("to", "greatest_relative_error", a.greatest_relative_error)
         .add("RMS", "rms_relative_error", a.root_mean_square(), 2)

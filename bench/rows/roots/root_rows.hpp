@@ -19,6 +19,7 @@ struct RootResult : RootSpeed {
   std::string function() const { return name_of(row.function); }
   std::string_view method() const { return row.promise().name; }
   double max_ulp() const { return accuracy.max_ulp; }
+  double max_ulp_promised() const { return row.max_ulp_promised(); }
   double max_relative_error() const { return accuracy.max_relative_error(); }
   bool serves(Accuracy wanted) const { return row.serves(wanted); }
   std::vector<std::string> accuracies_served() const;  // for which the path takes this method

@@ -1,0 +1,36 @@
+#include <raylanes/prepared_ray.hpp>
+#include <raylanes/triangles.hpp>
+
+#include "checked.hpp"
+#include "quiet_floats.hpp"
+#include "table/boxes.hpp"
+#include "table/kernel_table.hpp"
+#include "table/spheres.hpp"
+#include "table/triangles.hpp"
+
+namespace raylanes {
+
+PreparedRay::PreparedRay(const Ray& ray, const Path* path) : ray_(ray) {
+  const KernelTable& kernels = kernels_of(checked_path(path));
+  boxes_ = kernels.boxes.hits;
+  spheres_ = kernels.spheres.closest_among;
+  triangles_ =
+      kernels.triangles
+          .row[static_cast<std::size_t>(TriangleTest::exact)][static_cast<std::size_t>(Grade::reproducible)]
+          .closest_of_triangles;
+  const QuietFloats quiet;
+  kernels.boxes.prepare(ray, among_boxes_);
+  kernels.spheres.prepare(ray, among_spheres_);
+}
+
+void PreparedRay::refuse(std::size_t primitives) {
+  throw std::invalid_argument("PreparedRay: " + std::to_string(primitives) +
+                              " primitives; allowed are 0 to " + std::to_string(max_primitives));
+}
+
+void PreparedRay::refuse(std::size_t boxes, std::size_t entries) {
+  if (boxes > max_primitives) refuse(boxes);
+  refuse_size("hits", "entry", entries, "boxes", boxes);
+}
+
+}  // namespace raylanes
