@@ -3,7 +3,6 @@
 
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/paths.hpp>
-#include <raylanes/roots.hpp>
 #include <raylanes/version.hpp>
 
 #include "listener.hpp"
@@ -46,36 +45,6 @@ py::dict report_on(const py::array& vertices, const py::array& faces, std::size_
   return all;
 }
 
-Accuracy accuracy_named(std::string_view name) {
-  std::array<std::string_view, accuracies.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = accuracies[i].name;
-  return named<Accuracy>("accuracy", names, name);
-}
-
-template <class T>
-using Root = void (*)(std::span<const T>, std::span<T>, Accuracy, const Path*);
-
-template <class T>
-void take_roots(Root<T> root, const py::array& x, const py::array& y, std::string_view accuracy,
-                const char* path) {
-  const Rows from = rows_of(x, sizeof(T));
-  const std::span<T> to = span_of<T>(y);
-  const Accuracy bound = accuracy_named(accuracy);
-  const Path* const on = path_named(path);
-  if (from.count > 1 && from.stride != sizeof(T)) throw std::invalid_argument("x is not contiguous");
-  const WithoutGil others_run;
-  root({reinterpret_cast<const T*>(from.first), from.count}, to, bound, on);
-}
-
-void bind_root(py::module_& module, const char* name, Root<float> of_floats, Root<double> of_doubles) {
-  module.def(name, [=](const py::array& x, const py::array& y, std::string_view accuracy, const char* path) {
-    if (item_bytes(x) == sizeof(float))
-      take_roots<float>(of_floats, x, y, accuracy, path);
-    else
-      take_roots<double>(of_doubles, x, y, accuracy, path);
-  });
-}
-
 // As Python spells versions: "0.2.0.dev0" for "0.2.0-dev".
 std::string python_version() {
   std::string text = version();
@@ -92,9 +61,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("active_path", [] { return to_python(active_path().name); });
   module.def("find_path", [](const char* name) { return to_python(find_path(name).name); });
   module.def("closed_report", report_on);
-  bind_root(module, "sqrt", sqrt, sqrt);
-  bind_root(module, "rsqrt", rsqrt, rsqrt);
-  bind_root(module, "reciprocal", reciprocal, reciprocal);
+  bind_roots(module);
   bind_trees(module);
   bind_scenes(module);
 }

@@ -4,6 +4,8 @@
 
 namespace raylanes::python {
 
+// sqrt, rsqrt, reciprocal, accuracy.
+void bind_roots(pybind11::module_& module);
 // Bvh, BvhD and KdTree.
 void bind_trees(pybind11::module_& module);
 // SphereTree and Scene.

@@ -8,11 +8,8 @@ from ._arrays import numbers
 from .paths import chosen
 from ._scalars import word
 
-_short = {"1ulp": "within_1_ulp", "2^-44": "within_2^-44", "2^-22": "within_2^-22", "2^-16": "within_2^-16",
-          "2^-11": "within_2^-11", "2^-4": "within_2^-4"}
 
-
-def sqrt(x, accuracy: str = "correctly_rounded", out=None):
+def sqrt(x, accuracy="correctly_rounded", out=None):
     """Compute square roots.
 
     Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
@@ -21,8 +18,10 @@ def sqrt(x, accuracy: str = "correctly_rounded", out=None):
     ----------
     x : array of float
         float32 and float64 keep their type, float16 becomes float32, integers become float64.
-    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "correctly_rounded"
-        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    accuracy : str or float, default "correctly_rounded"
+        The error bound for normal numbers: "correctly_rounded" (0.5 ULP), "1 ulp", "2 ulp", "2^-44", "2^-22", "2^-16",
+        "2^-11" or "2^-4" (relative errors). "2^-44" of a float32 is "1 ulp". A float, such as 1e-7, is a relative
+        error: the loosest bound that keeps it.
     out : ndarray, optional
         The array to write to, of the shape and type of the result; x itself is allowed.
 
@@ -36,10 +35,11 @@ def sqrt(x, accuracy: str = "correctly_rounded", out=None):
     >>> raylanes.sqrt([4.0, 2.0])
     array([2.        , 1.41421356])
     """
-    return _root(_native.sqrt, x, accuracy, out)
+    roots = _native.sqrt(x, accuracy, out, chosen())
+    return _root(_native.sqrt, x, accuracy, out) if roots is None else roots
 
 
-def rsqrt(x, accuracy: str = "1ulp", out=None):
+def rsqrt(x, accuracy="1 ulp", out=None):
     """Compute reciprocal square roots, 1 / sqrt(x).
 
     Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
@@ -49,8 +49,10 @@ def rsqrt(x, accuracy: str = "1ulp", out=None):
     ----------
     x, out
         As in sqrt().
-    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "1ulp"
-        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    accuracy : str or float, default "1 ulp"
+        The error bound for normal numbers: "correctly_rounded" (0.5 ULP), "1 ulp", "2 ulp", "2^-44", "2^-22", "2^-16",
+        "2^-11" or "2^-4" (relative errors). "2^-44" of a float32 is "1 ulp". A float, such as 1e-7, is a relative
+        error: the loosest bound that keeps it.
 
     Returns
     -------
@@ -62,10 +64,11 @@ def rsqrt(x, accuracy: str = "1ulp", out=None):
     >>> raylanes.rsqrt([4.0, 0.25])
     array([0.5, 2. ])
     """
-    return _root(_native.rsqrt, x, accuracy, out)
+    roots = _native.rsqrt(x, accuracy, out, chosen())
+    return _root(_native.rsqrt, x, accuracy, out) if roots is None else roots
 
 
-def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
+def reciprocal(x, accuracy="correctly_rounded", out=None):
     """Compute reciprocals, 1 / x.
 
     Special values are as in IEEE 754, whatever the accuracy. Runs on one thread.
@@ -75,8 +78,10 @@ def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
     ----------
     x, out
         As in sqrt().
-    accuracy : {"correctly_rounded", "1ulp", "2^-44", "2^-22", "2^-16", "2^-11", "2^-4"}, default "correctly_rounded"
-        The error bound for normal numbers: 0.5 ULP, 1 ULP, or a relative error. "2^-44" of a float32 is "1ulp".
+    accuracy : str or float, default "correctly_rounded"
+        The error bound for normal numbers: "correctly_rounded" (0.5 ULP), "1 ulp", "2 ulp", "2^-44", "2^-22", "2^-16",
+        "2^-11" or "2^-4" (relative errors). "2^-44" of a float32 is "1 ulp". A float, such as 1e-7, is a relative
+        error: the loosest bound that keeps it.
 
     Returns
     -------
@@ -88,13 +93,17 @@ def reciprocal(x, accuracy: str = "correctly_rounded", out=None):
     >>> raylanes.reciprocal([4.0, 0.5])
     array([0.25, 2.  ])
     """
-    return _root(_native.reciprocal, x, accuracy, out)
+    roots = _native.reciprocal(x, accuracy, out, chosen())
+    return _root(_native.reciprocal, x, accuracy, out) if roots is None else roots
 
 
 def _root(root, x, accuracy, out):
-    x, accuracy = numbers("x", x), word("accuracy", accuracy)
+    """The same for other arrays than dense ones of float32 or float64, and for wrong arguments."""
+    x = numbers("x", x)
+    if not isinstance(accuracy, float):
+        accuracy = _native.accuracy(word("accuracy", accuracy))
     wanted = np.dtype(np.float32 if x.dtype.kind == "f" and x.itemsize <= 4 else np.float64)
     # In place is as good as apart, one element further is not.
     answer = Answer(out, x.shape, wanted, () if out is x else (x,))
-    root(np.ascontiguousarray(x, wanted).reshape(-1), answer.rows, _short.get(accuracy, accuracy), chosen())
+    root(np.require(x, wanted, "CA").reshape(-1), accuracy, answer.rows, chosen())
     return answer.finish()

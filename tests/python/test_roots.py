@@ -50,7 +50,7 @@ def test_any_bits():
         assert np.isnan(raylanes.sqrt(special, accuracy)[3:]).all()
 
 
-@pytest.mark.parametrize("root, accuracy", [(raylanes.sqrt, "correctly_rounded"), (raylanes.rsqrt, "1ulp"),
+@pytest.mark.parametrize("root, accuracy", [(raylanes.sqrt, "correctly_rounded"), (raylanes.rsqrt, "1 ulp"),
                                             (raylanes.reciprocal, "correctly_rounded")])
 def test_defaults_are_those_of_cpp(root, accuracy):
     """Correctly rounded where float32 and float64 both offer that. Few bytes tell 1 ULP from it: hence the default."""
@@ -58,6 +58,24 @@ def test_defaults_are_those_of_cpp(root, accuracy):
     for dtype in ("f4", "f8"):
         x = any_bits(5, 4000, np.dtype(dtype))
         assert root(x).tobytes() == root(x, accuracy).tobytes()
+
+
+@pytest.mark.parametrize("root", functions)
+def test_accuracies_have_names_and_numbers(root):
+    for dtype in ("f4", "f8"):
+        x = any_bits(6, 500, np.dtype(dtype))
+        for names in (["1 ulp", "1ulp", "within_1_ulp", "within 1 ulp", "1_ulp"], ["2 ulp", "within_2_ulp"],
+                      ["2^-11", "within_2^-11", 2.0**-11, np.float64(0.0005)]):
+            assert len({root(x, name).tobytes() for name in names}) == 1
+    x = np.random.default_rng(9).uniform(1, 4, 3000)
+    exact = functions[root](x.astype(np.longdouble))
+    for bound in (1e-15, 1e-12, 1e-7, 1e-3):
+        assert np.abs(root(x, bound) / exact - 1).max() <= bound
+    for wrong in (1e-20, np.nan, -1.0):
+        with pytest.raises(ValueError, match="accuracy: a relative error of"):
+            root(x, wrong)
+    with pytest.raises(ValueError, match='no "3 ulp", but correctly_rounded, 1 ulp, 2 ulp, 2\\^-44, .*such as 1e-7'):
+        root(x, "3 ulp")
 
 
 def test_layouts_and_out():
