@@ -98,5 +98,10 @@ class PreparedRay {
   detail::ClosestAmongSpheres spheres_;
   detail::ClosestAmongTriangles triangles_;
 };
+// By name, too, where a variable hides it.
+std::uint32_t hits(const PreparedRay& ray, const BoxArrays& boxes);
+std::uint32_t hits(const PreparedRay& ray, const BoxArrays& boxes, std::span<float> entry);
+Hit closest_hit(const PreparedRay& ray, const SphereArrays& spheres);
+Hit closest_hit(const PreparedRay& ray, const TriangleArrays& triangles);
 
 }  // namespace raylanes
