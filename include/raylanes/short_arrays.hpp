@@ -27,7 +27,8 @@
 #define RAYLANES_VECTOR_BYTES 0
 #endif
 
-namespace raylanes::inline RAYLANES_SHORT_ARRAYS {
+namespace raylanes {
+inline namespace RAYLANES_SHORT_ARRAYS {
 namespace few {
 
 #if RAYLANES_VECTOR_BYTES > 0
@@ -237,4 +238,5 @@ inline bool reciprocal_of_few(std::span<const T>, std::span<T>, Accuracy) {
 #endif
 
 }  // namespace few
-}  // namespace raylanes::inline RAYLANES_SHORT_ARRAYS
+}  // namespace RAYLANES_SHORT_ARRAYS
+}  // namespace raylanes
