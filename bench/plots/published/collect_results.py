@@ -30,8 +30,7 @@ KEYS = {
     'modes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'mode', 'mrays_per_second', 'spread'),
     'parts': ('scene', 'triangles', 'parts', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second',
               'spread', 'ratio', 'ratio_to', 'ratio_to_tree'),
-    'filters': ('scene', 'triangles', 'query', 'rays', 'ray_count', 'contender', 'path', 'mrays_per_second', 'ratio',
-                'ratio_quartiles'),
+    'filters': ('scene', 'triangles', 'query', 'rays', 'ray_count', 'contender', 'path', 'mrays_per_second'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
@@ -74,8 +73,6 @@ def is_shown(kind, row):
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
     if kind == 'parts':
         return row['contender'].startswith('scene')
-    if kind == 'filters':
-        return row['contender'].startswith('raylanes')
     return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes', 'skips') or row['contender'] == 'raylanes'
 
 

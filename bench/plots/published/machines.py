@@ -56,7 +56,13 @@ def few_rays(results):
 
 
 def kept(contender, share):
-    return where_two_paths(contender=contender, query=f'kept, {share} % rejected')
+    """The speed of calls or batches whose filter rejects a share, by that of Embree's filters."""
+    def ratio(results, row):
+        embree = results.one(contender='embree filter', **{key: row[key] for key in ('scene', 'rays', 'query')})
+        return row['mrays_per_second'] / embree['mrays_per_second']
+
+    return lambda results: pair(mean(ratio(results, row) for row in results.where(
+        contender=contender, query=f'kept, {share} % rejected', path=path)) for path in TWO_PATHS)
 
 
 # What each headline figure is, then what it is in the cases that a reader may have.
