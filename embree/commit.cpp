@@ -172,6 +172,7 @@ void Scene::commit() {
   collect_things(*fresh, false);
   fresh->other_count = fresh->things.size();
   collect_things(*fresh, true);
+  fresh->has_mesh_alone = fresh->is_plain_mesh && fresh->things.empty();
   if (fresh->is_plain_mesh) place_all(*fresh, device->threads);
   raylanes::BoundedBuildOptions options;
   options.threads = device->threads;

@@ -55,6 +55,7 @@ struct Built {
   std::optional<raylanes::RayCalls<raylanes::TriangleTree>> calls;  // of `mesh`
   // Whether no mesh has a filter, and all of them have the mask `mesh_mask`.
   bool is_plain_mesh = true;
+  bool has_mesh_alone = true;  // whether there is nothing besides either
   unsigned mesh_mask = ~0u;
 
   raylanes::Scene placed;             // the meshes and the placed instances, if `is_plain_mesh`

@@ -152,44 +152,47 @@ bool visit_any(const Built& built, const Thing& thing, RTCIntersectContext* cont
   });
 }
 
-}  // namespace
-
-void trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
+// Traces what a scene has besides meshes that no callback wants to know of.
+[[gnu::noinline]] void trace_parts(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
   if (!uses_placed(built, context)) {
     if (!built.faces.empty()) find_filtered<true>(built, context, ray.ray, ray.hit);
     if (!built.things.empty()) visit_things(built, built.tree_of_all(), context, ray);
     return;
   }
   const raylanes::Ray whole = ray_of(ray.ray, built.is_robust);
-  if (!built.has_placed_instances) {
-    if ((built.mesh_mask & ray.ray.mask) != 0)
-      if (const raylanes::Hit found = built.calls->closest(whole)) {
-        ray.ray.tfar = found.t;
-        put_face(built, found.primitive, found.u, found.v, context->instID[0], ray.hit);
-      }
-  } else if (ray.ray.mask != 0) {
-    if (const raylanes::SceneHit found =
-            built.is_unmasked ? built.placed.closest(whole) : built.placed.closest(whole, {}, ray.ray.mask)) {
-      ray.ray.tfar = found.t;
-      put_placed(built, found, context->instID[0], ray.hit);
-    }
+  if (const raylanes::SceneHit found = built.is_unmasked && ray.ray.mask != 0
+                                           ? built.placed.closest(whole)
+                                           : built.placed.closest(whole, {}, ray.ray.mask)) {
+    ray.ray.tfar = found.t;
+    put_placed(built, found, context->instID[0], ray.hit);
   }
   if (built.other_count != 0) visit_things(built, built.others, context, ray);
 }
-
-bool trace_occluded(const Built& built, RTCIntersectContext* context, RTCRay& ray) {
+[[gnu::noinline]] bool trace_any_part(const Built& built, RTCIntersectContext* context, RTCRay& ray) {
   if (!uses_placed(built, context)) {
     RTCHit hit;
     return (!built.faces.empty() && find_filtered<false>(built, context, ray, hit)) ||
            (!built.things.empty() && visit_any_thing(built, built.tree_of_all(), context, ray));
   }
   const raylanes::Ray whole = ray_of(ray, built.is_robust);
-  bool is_hit = false;
-  if (!built.has_placed_instances)
-    is_hit = (built.mesh_mask & ray.mask) != 0 && built.calls->occluded(whole);
-  else if (ray.mask != 0)
-    is_hit = built.is_unmasked ? built.placed.occluded(whole) : built.placed.occluded(whole, {}, ray.mask);
-  return is_hit || (built.other_count != 0 && visit_any_thing(built, built.others, context, ray));
+  return (built.is_unmasked && ray.mask != 0 ? built.placed.occluded(whole)
+                                             : built.placed.occluded(whole, {}, ray.mask)) ||
+         (built.other_count != 0 && visit_any_thing(built, built.others, context, ray));
+}
+
+}  // namespace
+
+void trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
+  if (!is_mesh_alone(built, context)) return trace_parts(built, context, ray);
+  if ((built.mesh_mask & ray.ray.mask) == 0) return;
+  if (const raylanes::Hit found = built.calls->closest(ray_of(ray.ray, built.is_robust))) {
+    ray.ray.tfar = found.t;
+    put_face(built, found.primitive, found.u, found.v, context->instID[0], ray.hit);
+  }
+}
+bool trace_occluded(const Built& built, RTCIntersectContext* context, RTCRay& ray) {
+  if (!is_mesh_alone(built, context)) return trace_any_part(built, context, ray);
+  return (built.mesh_mask & ray.mask) != 0 && built.calls->occluded(ray_of(ray, built.is_robust));
 }
 
 }  // namespace embree

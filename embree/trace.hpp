@@ -53,6 +53,11 @@ bool trace_occluded(const Built& built, RTCIntersectContext* context, RTCRay& ra
          !(built.has_placed_instances && context->instID[0] != RTC_INVALID_GEOMETRY_ID);
 }
 
+// Whether a scene has meshes alone, of one mask, and no callback wants to know of them.
+[[gnu::always_inline]] inline bool is_mesh_alone(const Built& built, const RTCIntersectContext* context) {
+  return built.has_mesh_alone && !(built.asks_context && context->filter != nullptr);
+}
+
 // The arguments of user callbacks, and what rtcFilterIntersection() and rtcFilterOcclusion() need besides.
 template <class Arguments>
 struct UserArguments : Arguments {

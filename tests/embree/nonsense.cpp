@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <random>
+#include <utility>
 
 #include "calls.hpp"
 
@@ -91,6 +92,40 @@ void unsupported_kinds() {
   expect("motion blur", device, RTC_ERROR_INVALID_OPERATION);
   rtcCollide(scene, scene, nullptr, nullptr);
   expect("collisions", device, RTC_ERROR_INVALID_OPERATION);
+}
+
+// The error function hears of each error, and the memory monitor in the end of as much freed as taken.
+void monitors() {
+  struct Heard {
+    long bytes = 0, most = 0;
+    std::vector<int> errors;
+  } heard;
+  RTCDevice watched = rtcNewDevice("threads=2, verbose=0");
+  rtcSetDeviceErrorFunction(
+      watched, [](void* to, RTCError code, const char*) { static_cast<Heard*>(to)->errors.push_back(code); },
+      &heard);
+  rtcSetDeviceMemoryMonitorFunction(
+      watched,
+      [](void* to, ssize_t bytes, bool) {
+        auto& all = *static_cast<Heard*>(to);
+        all.bytes += bytes, all.most = std::max(all.most, all.bytes);
+        return all.bytes < 100000;
+      },
+      &heard);
+  RTCDevice other = std::exchange(device, watched);
+  RTCScene scene =
+      scene_of({triangles_of(unit_triangle), points_of(RTC_GEOMETRY_TYPE_SPHERE_POINT, {0, 0, 0, 1})});
+  if (heard.most < 64) std::printf("a scene of %ld bytes\n", heard.most), ++failures;
+  rtcNewBuffer(watched, 1000000);
+  rtcDetachGeometry(scene, 9);
+  if (heard.errors != std::vector<int>{RTC_ERROR_OUT_OF_MEMORY, RTC_ERROR_INVALID_OPERATION})
+    std::printf("%zu errors heard\n", heard.errors.size()), ++failures;
+  expect("the first error", watched, RTC_ERROR_OUT_OF_MEMORY);
+  expect("no second error", watched, RTC_ERROR_NONE);
+  rtcReleaseScene(scene);
+  device = other;
+  if (heard.bytes != 1000000) std::printf("%ld bytes are left\n", heard.bytes), ++failures;
+  rtcReleaseDevice(watched);
 }
 
 // Calls with handles that exist and anything else in place of numbers.
@@ -182,6 +217,7 @@ int main() {
   null_handles();
   null_pointers();
   unsupported_kinds();
+  monitors();
   random_calls();
   std::printf("%d failures\n", failures);
   return failures == 0 ? 0 : 1;
