@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../queries/passages.hpp"
-#include "scene_parts.hpp"
+#include "lists/instance_lists.hpp"
 
 namespace raylanes {
 namespace {
@@ -25,16 +25,8 @@ struct ListsOfCommon {
   explicit operator bool() const { return quick_tree(scene, mask) != nullptr; }
   RayLists<SceneHit> operator()(const std::vector<Ray>& rays, std::span<const SkippedPrimitive> skips,
                                 std::uint32_t most, const TraceOptions& by) const {
-    const CommonTree& tree = *quick_tree(scene, mask);
-    const MemberNumbers numbers = tree.numbers();
-    std::vector<std::uint32_t> skipped;
-    for (const SkippedPrimitive& skip : skips) skipped.push_back(numbers.of(skip.instance, skip.primitive));
-    const TreeLists<float, TracedTree> lists{TreeOf::bvh(*tree.geometry->triangles())};
-    RayLists<Hit> found = lists(rays, skipped, most, by);
-    RayLists<SceneHit> spread{std::move(found.offsets), {}};
-    spread.items.reserve(found.items.size());
-    for (const Hit& hit : found.items) spread.items.push_back(numbers.owners.spread(hit));
-    return spread;
+    return lists_in_common<Hit>(*quick_tree(scene, mask), {.records = rays, .skip = skips},
+                                options_of_lists(by, most));
   }
 };
 

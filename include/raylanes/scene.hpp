@@ -46,6 +46,14 @@ struct SceneReport {
 };
 struct SceneStretch;
 
+/// A crossing of a ray and the surface of an instance. Its side is that in the space of the instance, so it tells entry
+/// from exit where the transform is a mirror, too.
+struct SceneCrossing : Crossing {
+  std::uint32_t geometry, instance;  ///< of the scene, as in SceneHit
+
+  bool operator==(const SceneCrossing&) const = default;
+};
+
 /// Geometries and instances that place them. Both are numbered from 0, in the order in which they are added.
 /// Call update() after any change, before the next query. Many threads may query one object at the same time, but not
 /// during a change. Without instances nothing is hit.
@@ -288,6 +296,33 @@ class Scene {
       return any_kept(ray, rejection, options, mask);
     });
   }
+
+  /// Returns every hit of each ray once, in the order of t, then of instances, then of primitives. The first one has
+  /// the bytes of closest(). options.skip takes hits in scenes.
+  /// One traversal a ray of a common tree, and one of each other instance that the ray comes to. In scenes that place
+  /// spheres or primitives of your own, each hit costs a search as by TraceOptions::after, which says which hits these
+  /// have. Needs memory for all hits of all rays. Throws what closest() throws.
+  RayLists<SceneHit> all_hits(RayView rays, const ListOptions& options = {}, std::uint32_t mask = ~0u) const;
+  /// Returns every hit of each ray, given as one array per number.
+  RayLists<SceneHit> all_hits(const RayArrays& rays, const ListOptions& options = {},
+                              std::uint32_t mask = ~0u) const;
+  /// Returns each crossing of a ray and the surface of an instance once, in the order of t, then of instances, then of
+  /// primitives. The ray crosses an instance as TriangleTree::crossings() says, in the space of that instance.
+  /// options.skip takes hits in scenes. Throws what closest() throws, and std::invalid_argument if the scene places
+  /// other primitives than triangles.
+  RayLists<SceneCrossing> crossings(RayView rays, const ListOptions& options = {},
+                                    std::uint32_t mask = ~0u) const;
+  /// Returns each crossing of the rays, given as one array per number.
+  RayLists<SceneCrossing> crossings(const RayArrays& rays, const ListOptions& options = {},
+                                    std::uint32_t mask = ~0u) const;
+  /// Counts the crossings of each ray over all instances, and sums up their sides; options.max_count is ignored.
+  /// Inactive rays leave their count unchanged. Makes lists. Throws as crossings() does, and std::invalid_argument if
+  /// counts.size() is not the number of rays.
+  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {},
+                       std::uint32_t mask = ~0u) const;
+  /// Counts the crossings of each ray, given as one array per number.
+  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
+                       const ListOptions& options = {}, std::uint32_t mask = ~0u) const;
 
   /// Computes the unit normal in the scene of each hit: normals[i] belongs to hits[i], hits in scenes or records that
   /// name an instance and a primitive. It is normal_in_scene() of <raylanes/surface.hpp> for the

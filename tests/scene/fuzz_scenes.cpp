@@ -133,6 +133,17 @@ void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const Tr
   }
 }
 
+// A scene has the hits of its instances.
+void expect_lists(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
+                  std::uint32_t mask) {
+  const auto lists = scene.all_hits(
+      rays, {.facing = options.facing, .path = options.path, .threads = options.threads}, mask);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!same_bytes(lists[i],
+                    std::span<const SceneHit>(all_scene_hits(scene, rays[i], mask, options.facing))))
+      fail("all hits: ray " + std::to_string(i) + " on " + options.path->name);
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -250,6 +261,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options, mask);
   if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
+  if (bytes.chance(32)) expect_lists(scene, rays, options, mask);
   if (bytes.chance(16)) expect_stretches(scene, rays, options, mask);
   if (bytes.chance(64)) expect_others(bytes, scene, rays, {.mode = options.mode, .path = options.path}, mask);
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);

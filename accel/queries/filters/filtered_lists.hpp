@@ -103,6 +103,13 @@ void replace_from_lists(const Source& rays, const HitRecords<AnyHit>& hits, cons
   }
 }
 
+// The options of a call for lists of `most` hits.
+template <class Options>
+ListOptions options_of_lists(const Options& by, std::uint32_t most) {
+  ListOptions options{.max_count = most, .facing = by.facing, .path = by.path, .threads = by.threads};
+  if constexpr (requires { by.counters; }) options.counters = by.counters;
+  return options;
+}
 // Lists of a tree. Trees and scenes that make no lists have NoLists.
 template <class T, class Tree>
 struct TreeLists {
@@ -113,9 +120,7 @@ struct TreeLists {
   template <class Options>
   RayLists<HitOf<T>> operator()(const std::vector<RayOf<T>>& rays, const PrimitiveView& skip,
                                 std::uint32_t most, const Options& by) const {
-    ListOptions options{.max_count = most, .facing = by.facing, .path = by.path, .threads = by.threads};
-    if constexpr (is_float<T>) options.counters = by.counters;
-    return hits_of<T>(tree, {.records = rays, .skip = skip}, options);
+    return hits_of<T>(tree, {.records = rays, .skip = skip}, options_of_lists(by, most));
   }
 };
 struct NoLists {

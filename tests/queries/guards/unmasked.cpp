@@ -298,6 +298,12 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     run(calls);
     calls.clear();
     add_nearest<float>(calls, "Scene", solid, of_scene, TraceOptions{.path = path, .threads = threads});
+    calls["Scene::all_hits"] = [&] {
+      const ListOptions lists{.path = path, .threads = threads};
+      for (const Scene* each : {&scene, &solid}) each->all_hits(of_scene.rays, lists);
+      std::vector<CrossingCount> counts(of_scene.rays.size());
+      solid.crossings(of_scene.arrays, lists), solid.count_crossings(of_scene.rays, counts, lists);
+    };
     calls["Scene::normals"] = [&] {
       std::vector<Float3> normals(of_scene.hits.size());
       solid.normals(of_scene.hits, normals, threads);

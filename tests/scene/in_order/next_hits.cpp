@@ -4,44 +4,15 @@
 
 #include <raylanes/paths.hpp>
 
-#include "../oracles/peeled.hpp"
-#include "../queries/query_trees.hpp"
-#include "../support/float_modes.hpp"
-#include "../support/same_bytes.hpp"
-#include "expect_scene.hpp"
+#include "../../oracles/peeled.hpp"
+#include "../../queries/query_trees.hpp"
+#include "../../support/float_modes.hpp"
+#include "../../support/same_bytes.hpp"
+#include "../expect_scene.hpp"
+#include "lattice_scenes.hpp"
 
 namespace raylanes::testing {
 namespace {
-
-// Two soups on a lattice, whose instances coincide, touch and are turned: ties in t are many.
-Scene scene_of_soups(Random& random, std::size_t instances) {
-  Scene scene;
-  for (int part = 0; part < 2; ++part) {
-    Mesh mesh;
-    for (int i = 0; i < 60; ++i) {
-      Triangle triangle;
-      for (Float3& corner : triangle.corner)
-        for (float& x : corner) x = static_cast<float>(random.integer(-2, 2));
-      append(mesh, triangle);
-    }
-    scene.add(Bvh(mesh));
-  }
-  const Transform turned{{{0, 0, 1, 0}, {0, 1, 0, 0}, {-1, 0, 0, 0}}};
-  for (std::uint32_t i = 0; i < instances; ++i)
-    scene.place(i % 2, i % 3 == 2 ? turned : moved_by(static_cast<float>(i % 3), 0, 0), 1u << (i % 4));
-  scene.update();
-  return scene;
-}
-
-std::vector<Ray> lattice_rays(Random& random, std::size_t count) {
-  std::vector<Ray> rays(count);
-  for (Ray& ray : rays) {
-    for (float& x : ray.origin) x = static_cast<float>(random.integer(-3, 3));
-    for (float& x : ray.direction) x = static_cast<float>(random.integer(-2, 2));
-    ray.tmin = random.chance(0.25) ? -infinity : 0;
-  }
-  return rays;
-}
 
 void expect_all_in_order(const Scene& scene, const std::vector<Ray>& rays, std::uint32_t mask,
                          const TraceOptions& options) {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../oracles/peeled.hpp"
-#include "../support/filtered.hpp"
-#include "boxed_cases.hpp"
+#include "../../oracles/peeled.hpp"
+#include "../../support/filtered.hpp"
+#include "../boxed_cases.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -245,6 +245,14 @@ TEST(NextOfScenes, take_spheres_and_primitives_of_the_caller) {
               all_of);
         if (instances > 2)
           expect_filtered<SceneHit>(mixed.scene, rays, TraceOptions{.path = path}, all_of, mask);
+        for (const std::uint32_t most : {~0u, 2u, 0u}) {
+          const auto lists = mixed.scene.all_hits(rays, {.max_count = most, .path = path}, mask);
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            std::vector<SceneHit> all = all_of(rays[i]);
+            all.resize(std::min<std::size_t>(all.size(), most));
+            ASSERT_TRUE(same_bytes(lists[i], std::span<const SceneHit>(all))) << "ray " << i;
+          }
+        }
       }
   }
 }

@@ -1,0 +1,145 @@
+// Lists of hits or crossings in a scene of triangles, by the tree of each instance.
+#pragma once
+
+#include <numeric>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "../../batch/scratch.hpp"
+#include "../../queries/ray_lists.hpp"
+#include "../../queries/traced_tree.hpp"
+#include "../scene_parts.hpp"
+
+namespace raylanes {
+
+template <class Item>
+inline constexpr bool is_hit = std::is_same_v<Item, Hit>;
+template <class Item>
+using SceneItem = std::conditional_t<is_hit<Item>, SceneHit, SceneCrossing>;
+
+// A hit or a crossing in a tree, as one in the scene.
+template <class Item>
+SceneItem<Item> in_scene(Item item, const TriangleOwner& owner) {
+  item.primitive -= owner.first;
+  if constexpr (is_hit<Item>)
+    return {item.t, item.u, item.v, item.primitive, owner.geometry, owner.instance};
+  else
+    return {item, owner.geometry, owner.instance};
+}
+// The same as an entry of all rays' lists.
+template <class Item>
+struct FoundItem : SceneItem<Item> {
+  std::size_t ray;
+};
+
+// The lists of rays in one tree, where numbers say which instances own its triangles. rays.skip names instances.
+template <class Item>
+RayLists<Item> lists_in_tree(const Bvh& tree, const MemberNumbers& numbers, RaySource rays,
+                             ListOptions options) {
+  std::vector<std::uint32_t> skip;
+  if (rays.skip.first != nullptr) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      skip.push_back(rays.takes_part(i) ? numbers.of(rays.skip.instance(i), rays.skip[i]) : no_primitive);
+    rays.skip = skip;
+  }
+  options.skip = rays.skip;
+  if constexpr (is_hit<Item>)
+    return hits_of<float>(TreeOf::bvh(tree), rays, options);
+  else
+    return crossings_of<Crossing, float>(TreeOf::bvh(tree), rays, options);
+}
+// The lists of rays in a common tree, as lists in the scene.
+template <class Item>
+RayLists<SceneItem<Item>> lists_in_common(const CommonTree& tree, const RaySource& rays,
+                                          const ListOptions& options) {
+  const MemberNumbers numbers = tree.numbers();
+  RayLists<Item> found = lists_in_tree<Item>(*tree.geometry->triangles(), numbers, rays, options);
+  RayLists<SceneItem<Item>> lists{std::move(found.offsets), {}};
+  lists.items.reserve(found.items.size());
+  for (const Item& item : found.items)
+    lists.items.push_back(in_scene(item, numbers.owners.of(item.primitive)));
+  return lists;
+}
+
+// Lists of a scene that has several trees.
+template <class Item>
+class InstanceLists {
+ public:
+  // Rays of no direction are inactive. options.max_count is of each tree.
+  InstanceLists(const SceneQuery& query, std::span<const Ray> rays, const ListOptions& options)
+      : query_(query), rays_(rays), options_(options) {
+    options_.active = nullptr, options_.progress = nullptr;
+  }
+
+  // The items of all rays. A ray's items of one instance are in order.
+  std::vector<FoundItem<Item>> find() {
+    std::vector<std::uint32_t> all(rays_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    for (const auto& tree : query_.scene.commons)
+      if (query_.scene.sees(*tree, query_.mask))
+        find_in(*tree->geometry->triangles(), tree->numbers(), all, rays_);
+    of_instance_.resize(query_.scene.instances.size());
+    for (const TopLevel& top : query_.scene.tops) visit_instances(top);
+    for (std::uint32_t instance = 0; instance < of_instance_.size(); ++instance)
+      if (!of_instance_[instance].empty()) find_in_instance(instance);
+    return std::move(found_);
+  }
+
+ private:
+  // Notes which rays come to which instances.
+  void visit_instances(const TopLevel& top) {
+    constexpr std::size_t step = 16384;
+    const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, step);
+    Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
+    VisitBatch batch;
+    batch.scratch = scratch.take<std::byte>(bytes), batch.visit = note, batch.context = this;
+    top_ = &top.tree;
+    for (first_ = 0; first_ < rays_.size(); first_ += step) {
+      batch.rays = rays_.data() + first_, batch.size = std::min(step, rays_.size() - first_);
+      query_.queries().visit(top.tree.view(), batch);
+    }
+  }
+  static void note(void* context, const VisitedLeaf& leaf) {
+    auto& self = *static_cast<InstanceLists*>(context);
+    for (std::uint32_t k = leaf.first; k < leaf.first + leaf.size; ++k) {
+      const std::uint32_t number = self.top_->order[k];
+      if ((self.query_.scene.instances[number].mask & self.query_.mask) == 0) continue;
+      for (std::size_t i = 0; i < leaf.count; ++i)
+        self.of_instance_[number].push_back(static_cast<std::uint32_t>(self.first_ + leaf.rays[i]));
+    }
+  }
+  void find_in_instance(std::uint32_t number) {
+    const Instance& instance = query_.scene.instances[number];
+    const std::vector<std::uint32_t>& picked = of_instance_[number];
+    std::vector<Ray> mapped(picked.size());
+    for (std::size_t k = 0; k < picked.size(); ++k) mapped[k] = rays_[picked[k]];
+    if (!instance.is_identity)
+      query_.kernels.queries.map_rays(rays_.data(), picked.data(), picked.size(), instance.inverse,
+                                      mapped.data());
+    find_in(*query_.scene.geometries[instance.geometry]->triangles(),
+            OneMember(number, instance.geometry).numbers(), picked, mapped);
+  }
+  // Appends what a tree has of rays in its space.
+  void find_in(const Bvh& tree, const MemberNumbers& numbers, const std::vector<std::uint32_t>& picked,
+               std::span<const Ray> rays) {
+    std::vector<SkippedPrimitive> skip;
+    if (query_.skip.first != nullptr)
+      for (const std::uint32_t i : picked) skip.push_back(skipped_at(query_.skip, i));
+    const RayLists<Item> lists =
+        lists_in_tree<Item>(tree, numbers, {.records = RayView(rays), .skip = skip}, options_);
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      for (const Item& item : lists[k])
+        found_.push_back({in_scene(item, numbers.owners.of(item.primitive)), picked[k]});
+  }
+
+  const SceneQuery& query_;
+  std::span<const Ray> rays_;
+  ListOptions options_;
+  const BoundedTreeArrays* top_ = nullptr;  // that is visited, with rays from `first_` on
+  std::size_t first_ = 0;
+  std::vector<std::vector<std::uint32_t>> of_instance_;  // the rays that come to each
+  std::vector<FoundItem<Item>> found_;
+};
+
+}  // namespace raylanes
