@@ -21,12 +21,9 @@ unsigned lowest_free_id(const Scene& scene) {
   return id;
 }
 
-RTCGeometry geometry_of(RTCScene handle, unsigned id) {
-  return on(handle, [&](Scene& scene) -> RTCGeometry {
-    const std::lock_guard guard(scene.lock);
-    const auto found = scene.geometries.find(id);
-    return found == scene.geometries.end() ? nullptr : reinterpret_cast<RTCGeometry>(found->second.get());
-  });
+RTCGeometry geometry_of(const Scene& scene, unsigned id) {
+  const auto found = scene.geometries.find(id);
+  return found == scene.geometries.end() ? nullptr : reinterpret_cast<RTCGeometry>(found->second.get());
 }
 
 RTCBounds bounds_of(const Scene& scene) {
@@ -81,11 +78,15 @@ RTC_API void rtcDetachGeometry(RTCScene handle, unsigned id) {
     scene.is_modified = true;
   });
 }
+// Without the lock: callbacks of a commit may call this.
 RTC_API RTCGeometry rtcGetGeometry(RTCScene handle, unsigned id) {
-  return geometry_of(handle, id);
+  return on(handle, [&](Scene& scene) { return geometry_of(scene, id); });
 }
 RTC_API RTCGeometry rtcGetGeometryThreadSafe(RTCScene handle, unsigned id) {
-  return geometry_of(handle, id);
+  return on(handle, [&](Scene& scene) {
+    const std::lock_guard guard(scene.lock);
+    return geometry_of(scene, id);
+  });
 }
 RTC_API void rtcCommitScene(RTCScene handle) {
   on(handle, [](Scene& scene) { scene.commit(); });

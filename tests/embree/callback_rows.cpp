@@ -8,7 +8,9 @@ namespace {
 const Vec down{0, 0, -1};
 
 // Balls of radius 1/2 at z = 0, -2, -4: each the plane through its centre, across z.
+RTCScene being_built = nullptr;
 void bounds_of_ball(const RTCBoundsFunctionArguments* a) {
+  if (being_built != nullptr && rtcGetGeometry(being_built, 0) == nullptr) return;
   const float z = -2 * static_cast<float>(a->primID);
   *a->bounds_o = {-.5f, -.5f, z - .5f, 0, .5f, .5f, z + .5f, 0};
 }
@@ -55,6 +57,10 @@ RTCGeometry balls() {
 
 void user_geometries() {
   RTCScene s = scene_of({balls(), triangles_of({-1, -1, -1, 1, -1, -1, 0, 1, -1})});
+  being_built = s;
+  rtcCommitGeometry(rtcGetGeometry(s, 0));
+  rtcCommitScene(s);
+  being_built = nullptr;
   show("user", s, ray_of({0, 0, 9}, down));
   show("triangle before a user's", s, ray_of({0, 0, -.75f}, down));
   show("beside the user's", s, ray_of({.75f, -.75f, 9}, down));
