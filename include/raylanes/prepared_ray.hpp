@@ -12,11 +12,11 @@ namespace raylanes {
 
 namespace detail {
 
-// The numbers that kernels compute from a ray once. tmin is NaN for a ray that hits nothing. near, far: which of the
+// The numbers that kernels compute from a ray once. tmin is NaN for a ray that hits nothing. first, last: which of the
 // arrays lo[3], hi[3] has the plane of an axis that the ray meets first, and last.
 struct RayAmongBoxes {
   float origin[3], inverse[3], far_inverse[3], tmin, tmax;
-  std::uint32_t near[3], far[3];
+  std::uint32_t first[3], last[3];
 };
 struct RayAmongSpheres {
   Ray ray;

@@ -107,8 +107,8 @@ void prepare(const Ray& ray, detail::RayAmongBoxes& prepared) {
     prepared.inverse[axis] = inverse;
     prepared.far_inverse[axis] = inverse * conservative_far_factor;
     const std::uint32_t is_negative = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
-    prepared.near[axis] = axis + 3 * is_negative;
-    prepared.far[axis] = axis + 3 * (1 - is_negative);
+    prepared.first[axis] = axis + 3 * is_negative;
+    prepared.last[axis] = axis + 3 * (1 - is_negative);
   }
   prepared.tmin = valid ? ray.tmin : std::numeric_limits<float>::quiet_NaN();
   prepared.tmax = ray.tmax;
@@ -128,8 +128,8 @@ inline std::uint32_t hits_from(const detail::RayAmongBoxes& ray, Soa arrays, std
   is_box = is_box & (load(1) <= load(4)) & (load(2) <= load(5));
   for (int axis = 0; axis < 3; ++axis) {
     V origin(ray.origin[axis]);
-    tmin = max((load(ray.near[axis]) - origin) * V(ray.inverse[axis]), tmin);
-    tmax = min((load(ray.far[axis]) - origin) * V(ray.far_inverse[axis]), tmax);
+    tmin = max((load(ray.first[axis]) - origin) * V(ray.inverse[axis]), tmin);
+    tmax = min((load(ray.last[axis]) - origin) * V(ray.far_inverse[axis]), tmax);
   }
   FloatMask<N> hit = (tmin <= tmax) & is_box;
   if (entry != nullptr) {

@@ -60,9 +60,16 @@ std::vector<BenchmarkCase> root_cliffs() {
                              [](std::span<const float> x, std::span<float> y) {
                                for (std::size_t i = 0; i < x.size(); ++i) y[i] = std::sqrt(x[i]);
                              }},
-                            {"raylanes", within<Accuracy::correctly_rounded>}};
+                            {"raylanes", [](std::span<const float> x, std::span<float> y) { sqrt(x, y); }},
+                            {"std_reciprocal_root",
+                             [](std::span<const float> x, std::span<float> y) {
+                               for (std::size_t i = 0; i < x.size(); ++i) y[i] = 1 / std::sqrt(x[i]);
+                             }},
+                            {"reciprocal_root", [](std::span<const float> x, std::span<float> y) {
+                               rsqrt(x, y, Accuracy::within_2_ulp);
+                             }}};
   for (const auto& [name, way] : short_ways)
-    for (const std::size_t n : {1u, 2u, 4u, 8u, 16u, 32u, 64u})
+    for (const std::size_t n : {1u, 2u, 4u, 8u, 15u, 16u, 17u, 24u, 32u, 48u, 64u, 65u})
       cases.push_back({std::string("cliff/short/") + name + '/' + std::to_string(n),
                        [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
   return cases;
