@@ -14,15 +14,16 @@ namespace raylanes {
 // - x and y have the same size, which may be 0, and are the same array or do not overlap. They need the alignment of
 //   their number.
 // - NaN, infinities, zeros and negative numbers give what IEEE 754 says for the exact operation.
-// - `path` is an ISA path that this machine supports; null: the active one.
+// - `path` is an ISA path that this machine supports; null: the active one. Few numbers take instructions that do not
+//   depend on it.
 // - Throws std::invalid_argument, before writing anything, if the sizes differ, the accuracy or method does not exist
 //   or is not offered, or this machine lacks the path; throws as active_path() does if `path` is null.
 
 /// Computes y[i] = √x[i] within the bound of `accuracy`, by the fastest method measured on the ISA path.
 /// Below Accuracy::correctly_rounded, bits may depend on the position in the array, its size and the processor; the
-/// bound holds everywhere. Up to 16 values are correctly rounded.
+/// bound holds everywhere.
 void sqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path);
-/// Computes y[i] = √x[i] of doubles within the bound of `accuracy`. Up to 16 values are correctly rounded.
+/// Computes y[i] = √x[i] of doubles within the bound of `accuracy`.
 void sqrt(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path);
 /// Computes y[i] = 1/√x[i] within the bound of `accuracy`.
 void rsqrt(std::span<const float> x, std::span<float> y, Accuracy accuracy, const Path* path);
@@ -34,9 +35,9 @@ void reciprocal(std::span<const float> x, std::span<float> y, Accuracy accuracy,
 /// Computes y[i] = 1/x[i] of doubles within the bound of `accuracy`.
 void reciprocal(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path);
 
-// The same calls on the active path. Few numbers, up to 64 on processors with AVX if the caller is compiled for them,
-// take the inlined instructions of <raylanes/short_arrays.hpp>: a short array costs what a loop in its place costs. The
-// path does not matter to them.
+// The same calls on the active path. Few numbers, up to 64 floats if the caller is compiled for AVX2, take inlined
+// instructions, those of <raylanes/short_arrays.hpp>: a short array costs what a loop in its place costs. The path does
+// not matter to them: nothing is thrown if RAYLANES_PATH is wrong.
 inline namespace RAYLANES_SHORT_ARRAYS {
 
 /// Computes y[i] = √x[i] within the bound of `accuracy`, on the active path.
