@@ -36,8 +36,8 @@ void reciprocal(std::span<const float> x, std::span<float> y, Accuracy accuracy,
 void reciprocal(std::span<const double> x, std::span<double> y, Accuracy accuracy, const Path* path);
 
 // The same calls on the active path. Few numbers, up to 64 floats if the caller is compiled for AVX2, take instructions
-// that <raylanes/short_arrays.hpp> inlines: a short array costs what a loop in its place costs. The path does not matter
-// to them: nothing is thrown if RAYLANES_PATH is wrong.
+// that <raylanes/short_arrays.hpp> inlines: a short array costs what a loop in its place costs. The path does not
+// matter to them: nothing is thrown if RAYLANES_PATH is wrong.
 inline namespace RAYLANES_SHORT_ARRAYS {
 
 /// Computes y[i] = √x[i] within the bound of `accuracy`, on the active path.
