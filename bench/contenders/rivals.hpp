@@ -9,7 +9,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/queries.hpp>
 
-#include "../support/oracles/exact_doubles.hpp"
+#include "../support/oracles/exact_rays.hpp"
 
 namespace raylanes::bench {
 

@@ -8,7 +8,6 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
-#include <stdexcept>
 #include <string_view>
 #include <thread>
 

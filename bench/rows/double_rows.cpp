@@ -162,7 +162,7 @@ class Race {
     return work.answers->occluded[i] != 0 ? 0 : no_primitive;
   }
   double exact_t(std::size_t i, std::uint32_t triangle) const {
-    const auto hit = oracle::exact_double_hit(set_.rays[i], oracle::corners_of(mesh_, triangle)).hit;
+    const auto hit = oracle::exact_hit(set_.rays[i], oracle::corners_of(mesh_, triangle)).hit;
     return hit ? hit.t : std::numeric_limits<double>::infinity();
   }
   // The nearest of the triangles that contenders name; `looks_everywhere`: of all. To rays that ask for
@@ -175,7 +175,7 @@ class Race {
     const std::uint32_t named =
         set_.query == Query::any ? tree_.closest(set_.rays[i]).primitive : no_primitive;
     if (looks_everywhere || (set_.query == Query::any && named == no_primitive)) {
-      const auto hits = oracle::exact_double_hits(mesh_, set_.rays[i]);
+      const auto hits = oracle::exact_hits(mesh_, set_.rays[i]);
       return hits.empty() ? nearest : hits[0].t;
     }
     look_at(named);

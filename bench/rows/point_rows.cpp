@@ -12,7 +12,7 @@
 
 #include "../contenders/fast_winding.hpp"
 #include "../contenders/rivals.hpp"
-#include "../support/oracles/exact_crossings.hpp"
+#include "../support/oracles/exact_rays.hpp"
 #include "../support/scenes/splitmix.hpp"
 
 namespace raylanes::bench {
@@ -225,8 +225,8 @@ class PointRace {
     // The first points of the sample, the same for all contenders.
     for (std::size_t k = 0; k < std::min(some_.size(), max_judged); ++k) {
       if (k == truths_.size())
-        truths_.push_back(oracle::exact_location(scene_.mesh.vertices, scene_.mesh.triangles, some_[k],
-                                                 {0.31f, -0.73f, 0.59f}, options_.rule));
+        truths_.push_back(
+            oracle::exact_location(scene_.mesh, some_[k], {0.31f, -0.73f, 0.59f}, options_.rule));
       ++row.judged, row.wrong += truths_[k] == answers.locations[has_all ? numbers_[k] : k] ? 0 : 1;
     }
   }

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "../contenders/rivals.hpp"
-#include "../support/oracles/exact_crossings.hpp"
+#include "../support/oracles/exact_rays.hpp"
 
 namespace raylanes::bench {
 namespace {
@@ -167,8 +167,8 @@ class Race {
   std::size_t exact_items(const std::string& query, const Ray& ray) const {
     const Mesh& mesh = scene_.mesh;
     const bool counts_crossings = query == "crossings" || query == "count";
-    if (counts_crossings) return oracle::exact_crossings(mesh.vertices, mesh.triangles, ray).size();
-    const std::vector<Hit> hits = oracle::all_exact_hits(mesh.vertices, mesh.triangles, ray);
+    if (counts_crossings) return oracle::exact_crossings(mesh, ray).size();
+    const std::vector<Hit> hits = oracle::exact_hits(mesh, ray);
     for (const unsigned percent : rejected_percent)
       if (query == kept_name(percent))
         return std::ranges::all_of(

@@ -1,4 +1,3 @@
-#include <iostream>
 #include <memory>
 
 #include "../../dispatch/table/kernel_table.hpp"

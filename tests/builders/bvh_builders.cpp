@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -21,7 +21,7 @@ namespace {
 // business.
 void expect_exact_hits(const Mesh& mesh, std::size_t count, float reach, const Float3& centre = {0, 0, 0}) {
   const std::vector<Ray> rays = mixed_rays(mesh, count, reach, centre, 3);
-  const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> expected = oracle::nearest_hits(mesh, rays);
   for (const auto& build : builds_of<Bvh>()) {
     const Bvh bvh(mesh, build.options);
     const std::vector<Hit> hits = trace(bvh, rays, {.mode = TraversalMode::single});

@@ -2,7 +2,6 @@
 // every mode: of any small size, of coincident and shrinking triangles. tests/queries/worlds has other meshes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

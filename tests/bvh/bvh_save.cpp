@@ -5,7 +5,6 @@
 #include <cstring>
 #include <functional>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

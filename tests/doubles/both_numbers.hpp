@@ -25,10 +25,6 @@ struct NumberNames {
 template <class T>
 using BvhOf = std::conditional_t<std::is_same_v<T, float>, Bvh, BvhD>;
 template <class T>
-using MeshOf = std::conditional_t<std::is_same_v<T, float>, Mesh, DoubleMesh>;
-template <class T>
-using CrossingOf = std::conditional_t<std::is_same_v<T, float>, Crossing, CrossingD>;
-template <class T>
 using TraceOptionsOf = std::conditional_t<std::is_same_v<T, float>, TraceOptions, TraceOptionsD>;
 
 // The same numbers as floats or as doubles.

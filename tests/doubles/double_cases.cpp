@@ -1,11 +1,9 @@
 #include "double_cases.hpp"
 
-#include <cmath>
-
 namespace raylanes::testing {
 namespace {
 
-Double3 mean(const DoubleCorners& corners, double u, double v) {
+Double3 mean(const TriangleCorners<double>& corners, double u, double v) {
   Double3 point;
   for (std::size_t k = 0; k < 3; ++k)
     point[k] = (1 - u - v) * corners[0][k] + u * corners[1][k] + v * corners[2][k];
@@ -58,7 +56,7 @@ std::vector<RayD> aimed_rays(const DoubleMesh& mesh, std::size_t count, std::uin
   };
   std::vector<RayD> rays;
   while (rays.size() < count) {
-    const DoubleCorners corners = corners_of(mesh, random.index(mesh.triangles.size()));
+    const auto corners = corners_of(mesh, random.index(mesh.triangles.size()));
     const double u = random.real(0, 1);
     const Double3 targets[] = {corners[random.index(3)], mean(corners, u, 0), mean(corners, u, 1 - u),
                                mean(corners, 0.5 * u, 0.25), any_point(1)};

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 
 namespace raylanes::testing {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../../bench/support/oracles/exact_point.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "double_cases.hpp"

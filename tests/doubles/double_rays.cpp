@@ -70,46 +70,26 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   }
 }
 
-HitD nearest_of(const std::vector<HitD>& hits) {
-  return hits.empty() ? HitD() : hits[0];
-}
-
-// Each size is traced alone and together.
+// Each size is traced alone and together, and from points as packets.
 TEST(DoubleRays, of_all_sizes_have_the_hits_of_rational_arithmetic) {
   for (const DoubleCase& c : double_cases(by_level<std::size_t>(100, 400, 1600))) {
     const BvhD tree(c.mesh.vertices, c.mesh.triangles);
-    for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
-      std::vector<HitD> expected, hits(c.rays.size());
-      for (const RayD& ray : c.rays) expected.push_back(nearest_of(exact_double_hits(c.mesh, ray, facing)));
-      for (const Path* path : paths_with_own_queries()) {
-        SCOPED_TRACE(c.name + " on " + path->name);
-        const TraceOptionsD options{.path = path, .facing = facing};
-        expect_single_calls(tree, c.rays, options);
-        tree.closest(c.rays, hits, options);
-        for (std::size_t i = 0; i < hits.size(); ++i)
-          ASSERT_TRUE(same_bytes(hits[i], expected[i])) << text_of(c.rays[i]);
+    for (const std::vector<RayD>& rays : {c.rays, aimed_rays_from_points(c.mesh, 200, 100, 5)})
+      for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
+        std::vector<HitD> expected, hits(rays.size());
+        for (const RayD& ray : rays) {
+          const std::vector<HitD> all = exact_hits(c.mesh, ray, facing);
+          expected.push_back(all.empty() ? HitD() : all[0]);
+        }
+        for (const Path* path : paths_with_own_queries()) {
+          SCOPED_TRACE(c.name + " on " + path->name);
+          const TraceOptionsD options{.path = path, .facing = facing};
+          expect_single_calls(tree, rays, options);
+          tree.closest(rays, hits, options);
+          for (std::size_t i = 0; i < hits.size(); ++i)
+            ASSERT_TRUE(same_bytes(hits[i], expected[i])) << text_of(rays[i]);
+        }
       }
-    }
-  }
-}
-
-// Those are traced as packets.
-TEST(DoubleRays, from_points_have_the_hits_of_rational_arithmetic) {
-  for (const DoubleCase& c : double_cases(0)) {
-    SCOPED_TRACE(c.name);
-    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
-    const std::vector<RayD> rays = aimed_rays_from_points(c.mesh, 200, 100, 5);
-    std::vector<HitD> expected(rays.size()), hits(rays.size());
-    std::vector<std::uint8_t> occluded(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      expected[i] = nearest_of(exact_double_hits(c.mesh, rays[i]));
-    for (const Path* path : paths_with_own_queries()) {
-      tree.closest(rays, hits, {.path = path}), tree.occluded(rays, occluded, {.path = path});
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_TRUE(same_bytes(hits[i], expected[i])) << path->name << ' ' << text_of(rays[i]);
-        ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << path->name << ' ' << text_of(rays[i]);
-      }
-    }
   }
 }
 

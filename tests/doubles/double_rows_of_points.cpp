@@ -36,7 +36,7 @@ class Rows {
     const double extent = box_.hi[axis] - box_.lo[axis];
     RayD ray{point, 0, {0, 0, 0}, std::numeric_limits<double>::infinity()};
     ray.origin[axis] = box_.lo[axis] - 0.5 * extent, ray.direction[axis] = 1;
-    for (const CrossingD& crossing : exact_double_crossings(mesh_, ray)) {
+    for (const CrossingD& crossing : exact_crossings(mesh_, ray)) {
       const double position = ray.origin[axis] + crossing.t, ulp_of_t = crossing.t * 0x1p-52;
       const double ulp = std::nextafter(std::fabs(position), HUGE_VAL) - std::fabs(position);
       for (int k = -3; k <= 3; ++k) {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../bench/support/oracles/exact_point.hpp"
 #include "../fuzz/any_doubles.hpp"
-#include "../fuzz/any_filters.hpp"
-#include "../fuzz/query_checks.hpp"
+#include "../fuzz/any_queries.hpp"
 #include "../traverse/reference/in_flight.hpp"
 
 namespace raylanes::testing {
@@ -35,7 +35,7 @@ void expect_row(Bytes& bytes, const DoubleMesh& mesh, const BvhD& tree, const Pa
     bool is_in_box = true;
     for (std::size_t k = 0; k < 3; ++k)
       is_in_box = is_in_box && row[i][k] >= tree.bounds().lo[k] && row[i][k] <= tree.bounds().hi[k];
-    const bool is_inside = is_in_box && exact_double_crossings(mesh, ray).size() % 2 != 0;
+    const bool is_inside = is_in_box && exact_crossings(mesh, ray).size() % 2 != 0;
     const Location expected = is_on(mesh, row[i]) ? Location::on
                               : is_inside         ? Location::inside
                                                   : Location::outside;
@@ -44,23 +44,18 @@ void expect_row(Bytes& bytes, const DoubleMesh& mesh, const BvhD& tree, const Pa
   }
 }
 
-// Points of any bits, in batches and alone, by rational numbers. Points on triangles, and no others, have the signed
-// distance 0.
+// Points of any bits, in batches and alone, by rational numbers.
 void expect_closest_points(const DoubleMesh& mesh, const BvhD& tree, const VertexViewD& points,
-                           const std::vector<Location>& locations, const Path* path) {
+                           const Path* path) {
   static Fence fence(max_double_rays * sizeof(ClosestPointD));
   const std::span<ClosestPointD> closest(fence.last<ClosestPointD>(points.count), points.count);
-  std::vector<double> distances(points.count);
   tree.closest_points(points, closest, {.path = path});
   fence.expect_intact("closest points");
-  tree.signed_distances(points, distances, {.path = path});
   for (std::size_t i = 0; i < points.count; ++i) {
     const std::string point = std::string(path->name) + ": point " + std::to_string(i) + ": ";
     const Double3 p = points[i];
     if (!same_bytes(closest[i], tree.closest_point(p, {.path = path}))) fail(point + "alone it is another");
     if (closest[i] && !is_finite(p)) fail(point + "it is no number");
-    if (std::isnan(distances[i]) || (distances[i] == 0) != (locations[i] == Location::on))
-      fail(point + "the signed distance is wrong");
     if (!is_finite(p)) continue;
     const std::string fault = fault_of_closest_point(mesh, p, closest[i]);
     if (!fault.empty()) fail(point + fault);
@@ -92,83 +87,32 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
   DoubleCoordinates coordinates(bytes);
   const DoubleMesh mesh = any_double_mesh(bytes, coordinates);
-  const Path* const path = bytes.pick(fuzzed_paths());
-  const Facing facing = bytes.chance(128) ? Facing::any : bytes.chance(128) ? Facing::front : Facing::back;
-  const TreeBuilder builder = bytes.chance(128) ? TreeBuilder::binned_sah : TreeBuilder::morton;
-  const bool flush = bytes.chance(48);
   std::vector<RayD> rays;
   for (std::size_t n = bytes.below(max_double_rays); rays.size() < n;)
     rays.push_back(any_double_ray(bytes, coordinates, mesh));
   const bool share_origin = bytes.chance(64);
   if (share_origin)
     for (RayD& ray : rays) ray.origin = rays[0].origin;
-  ExpectedLists<double> expected;
-  const bool skips = bytes.chance(96);
-  std::vector<std::uint32_t> skip, names;
-  for (const RayD& ray : rays) {
-    auto& hits = expected.hits.emplace_back(exact_double_hits(mesh, ray, facing));
-    std::uint32_t skipped = no_primitive;
-    if (skips) {
-      skipped = hits.empty() ? static_cast<std::uint32_t>(bytes.below(1000)) : bytes.pick(hits).primitive;
-      skip.push_back(skipped);
-      std::erase_if(hits, [&](const HitD& hit) { return hit.primitive == skipped; });
-    }
-    std::erase_if(expected.crossings.emplace_back(exact_double_crossings(mesh, ray)),
-                  [&](const CrossingD& c) {
-                    return c.primitive == skipped ||
-                           (facing != Facing::any && c.side != (facing == Facing::front ? -1 : 1));
-                  });
-    names.push_back(static_cast<std::uint32_t>(bytes.below(mesh.triangles.size() + 2)) - 1);
-  }
-  // Now and then of triangles of other vertices, of which some collapse or come back at a refit.
-  const bool refits = bytes.chance(64);
-  DoubleMesh before = mesh;
-  for (std::uint32_t i = 0; refits && i < before.triangles.size(); ++i)
-    before.triangles[i] = {i, i + 1, i + 2};
-  BvhD tree(before.vertices, before.triangles, {.builder = builder});
-  if (refits) tree.refit(mesh.vertices, mesh.triangles);
+  const AnyQueries<double> queries(bytes, mesh, rays);
+  const auto tree =
+      any_refitted<BvhD>(bytes, mesh, bytes.chance(128) ? TreeBuilder::binned_sah : TreeBuilder::morton);
   tree.each_triangle([&](std::uint32_t primitive, const std::array<Double3, 3>& corners) {
     for (std::size_t k = 0; k < 3; ++k)
       if (corners[k] != mesh.vertices[mesh.triangles[primitive][k]]) fail("a corner is another");
     if (same_bytes(corners[0], corners[1]) || same_bytes(corners[1], corners[2])) fail("corners are equal");
   });
-  std::vector<Location> locations(rays.size());
-  const VertexViewD origins(rays.data(), rays.size(), sizeof(RayD));
+  const bool flush = bytes.chance(48);
   const Rounding rounding(flush);
-  tree.locate(
-      origins, locations,
-      {.rule = bytes.pick({InsideRule::parity, InsideRule::vote, InsideRule::winding}), .path = path});
-  // Results that depend on subnormal numbers may differ then: only faults are looked for.
-  if (flush) {
-    tree.all_hits(rays, {.facing = facing, .path = path, .skip = skip});
-    tree.crossings(rays, {.path = path});
-    std::vector<HitD> passages(rays.size());
-    tree.closest_crossing(rays, passages, {.path = path, .facing = facing, .skip = skip});
-    std::vector<double> numbers(rays.size());
-    tree.winding_numbers(origins, numbers, {.path = path});
-    std::vector<double> distances(rays.size());
-    tree.signed_distances(origins, distances, {.path = path});
-    return 0;
-  }
-  const auto rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size()));
-  expect_corners(tree, mesh, names);
-  run_out_of_memory(bytes, tree, rays, rule);
-  expect_active_alone(tree, rays, path, rule);
-  const std::uint32_t most = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(5));
-  expect_lists(tree, rays, expected, {.max_count = most, .facing = facing, .path = path, .skip = skip});
-  expect_kept(tree, rays, expected.hits, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
-  expect_next_hits(tree, rays, expected, path, facing, skip);
-  expect_passages(tree, mesh, rays, TraceOptionsD{.path = path, .facing = facing, .skip = skip});
+  queries.ask(tree, flush);
+  if (flush) return 0;
   const bool flies = bytes.chance(48);
   if (flies) let_rays_fly(tree);
   const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
-  if (!skips && !rays.empty() && (streams || share_origin || flies))
-    expect_hits_of_many(tree, rays, streams ? 4100 : 80, expected.hits, {.path = path, .facing = facing});
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if ((locations[i] == Location::on) != (is_finite(rays[i].origin) && is_on(mesh, rays[i].origin)))
-      fail(std::string(path->name) + ": point " + std::to_string(i) + ": on is wrong");
-  expect_row(bytes, mesh, tree, path);
-  expect_windings(tree, mesh, rays, {.accuracy = bytes.pick({0.0, 1e-6, 0.1}), .path = path}, true);
-  if (bytes.chance(40)) expect_closest_points(mesh, tree, origins, locations, path);
+  if (queries.skip.empty() && !rays.empty() && (streams || share_origin || flies))
+    expect_hits_of_many(tree, rays, streams ? 4100 : 80, queries.expected.hits,
+                        {.path = queries.path, .facing = queries.facing});
+  expect_row(bytes, mesh, tree, queries.path);
+  if (bytes.chance(40))
+    expect_closest_points(mesh, tree, VertexViewD(rays.data(), rays.size(), sizeof(RayD)), queries.path);
   return 0;
 }

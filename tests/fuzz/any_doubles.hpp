@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "support.hpp"
 
 namespace raylanes::testing {

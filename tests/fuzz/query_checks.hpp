@@ -19,8 +19,7 @@ bool is_finite(const Point& point) {
   return std::ranges::all_of(point, [](auto x) { return std::isfinite(x); });
 }
 
-template <class T>
-using CrossingOf = std::conditional_t<std::is_same_v<T, float>, Crossing, CrossingD>;
+using oracle::CrossingOf;
 template <class T>
 struct ExpectedLists {
   std::vector<std::vector<HitOf<T>>> hits;

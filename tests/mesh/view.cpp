@@ -10,7 +10,7 @@
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 
@@ -48,9 +48,7 @@ std::size_t count_hits(const BvhView& tree, const Ray& ray) {
 void expect_all_hits(const Mesh& mesh, const BvhView& view, std::span<const Ray> rays) {
   std::size_t hits = 0;
   for (const Ray& ray : rays) {
-    std::size_t expected = 0;
-    for (const Index3& triangle : mesh.triangles)
-      expected += oracle::exact_hit(ray, triangle_of(mesh.vertices, triangle)) ? 1u : 0u;
+    const std::size_t expected = oracle::exact_hits(mesh, ray).size();
     EXPECT_EQ(count_hits(view, ray), expected);
     hits += expected;
   }

@@ -1,4 +1,4 @@
-// Batches as users have them: records of any size and alignment, arrays, some of the rays alone.
+// Batches as users have them: records of any size and alignment, runs of rays, more rays than streams take.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,9 +10,7 @@
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
-#include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"
-#include "../traverse/reference/segment_to.hpp"
 #include "../traverse/reference/traced.hpp"
 
 namespace raylanes::testing {
@@ -77,74 +75,6 @@ TEST_F(BatchViews, records_of_any_alignment) {
   }
 }
 
-TEST_F(BatchViews, arrays_with_a_mask) {
-  const RayColumns columns{std::span<const Ray>(rays)};
-  std::vector<std::uint8_t> active((rays.size() + 7) / 8);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (i % 3 != 0 && (i < 1000 || i > 1100)) active[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
-  for (TraceOptions options : ways_to_trace()) {
-    options.active = active.data();
-    std::vector<Hit> hits(rays.size(), Hit{-5, -5, -5, 5});
-    std::vector<std::uint8_t> occluded(rays.size(), 9);
-    bvh.closest(columns.arrays(), hits, options);
-    bvh.occluded(columns.arrays(), occluded, options);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if ((active[i / 8] >> (i % 8) & 1) == 0) {
-        ASSERT_EQ(hits[i].t, -5) << "ray " << i << " takes no part";
-        ASSERT_EQ(occluded[i], 9) << "ray " << i << " takes no part";
-      } else {
-        expect(i, hits[i], options);
-        ASSERT_EQ(occluded[i], expected[i] ? 1 : 0) << i;
-      }
-    }
-  }
-}
-
-TEST_F(BatchViews, segments_from_a_shared_point) {
-  const Float3 light{0.3f, 0.2f, 2.5f};
-  const SegmentEnds ends{0.25f, 0.875f};
-  std::vector<Float3> points;
-  std::vector<std::uint8_t> expected_of, active((rays.size() + 7) / 8);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    points.push_back(rays[i].origin);
-    expected_of.push_back(bvh.occluded(segment_to<float>(light, points[i], ends)) ? 1 : 0);
-    if (i % 5 != 0) active[i / 8] |= static_cast<std::uint8_t>(1u << (i % 8));
-  }
-  EXPECT_GT(std::count(expected_of.begin(), expected_of.end(), 1), 100);
-  EXPECT_GT(std::count(expected_of.begin(), expected_of.end(), 0), 100);
-  std::vector<TraceOptions> ways = ways_to_trace();
-  ways.push_back({.path = &active_path(), .threads = 2});
-  for (TraceOptions options : ways) {
-    std::vector<std::uint8_t> occluded(rays.size(), 9);
-    bvh.occluded_from(light, points, occluded, ends, options);
-    ASSERT_EQ(occluded, expected_of) << name_of(options);
-    options.active = active.data();
-    std::fill(occluded.begin(), occluded.end(), std::uint8_t{9});
-    bvh.occluded_from(light, points, occluded, ends, options);
-    for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(occluded[i], i % 5 == 0 ? 9 : expected_of[i]);
-  }
-  std::vector<std::uint8_t> two(2);
-  expect_words(message_of<std::invalid_argument>([&] { bvh.occluded_from(light, points, two); }),
-               {"2", "points"});
-  expect_words(
-      message_of<std::invalid_argument>([&] { bvh.occluded_from(light, VertexView(nullptr, 2), two); }),
-      {"points", "nothing"});
-  bvh.occluded_from(light, VertexView(), {});
-}
-
-TEST(SegmentViews, longer_than_the_largest_float) {
-  const std::vector<Float3> corners{{0, -1, -1}, {0, 2, -1}, {0, -1, 2}};
-  const Bvh tree(corners, std::vector<Index3>{{0, 1, 2}});
-  const std::vector<Float3> points{{-3e38f, 0, 0}, {-3e38f, 3e38f, 0}, {3e38f, 1, 0}, {-3e38f, nan, 0}};
-  for (const TraceOptions& options : ways_to_trace()) {
-    std::vector<std::uint8_t> occluded(points.size(), 9);
-    tree.occluded_from({3e38f, 0, 0}, points, occluded, {}, options);
-    EXPECT_EQ(occluded, (std::vector<std::uint8_t>{1, 0, 0, 0})) << name_of(options);
-    tree.occluded_from({3e38f, 0, 0}, points, occluded, {0.0f, 0.49f}, options);
-    EXPECT_EQ(occluded[0], 0) << name_of(options);
-  }
-}
-
 TEST_F(BatchViews, what_cannot_be_written_is_refused) {
   std::vector<Hit> hits(rays.size());
   const auto message = [&](RayView from, HitView to) {
@@ -155,6 +85,13 @@ TEST_F(BatchViews, what_cannot_be_written_is_refused) {
   expect_words(message(RayView(rays.data(), 3), HitView(hits.data(), 2)), {"2", "3"});
   expect_words(message(RayView(rays.data(), 3), HitView(hits.data(), 3, 12)), {"12", "16"});
   bvh.closest(RayView(), HitView());
+  std::vector<std::uint8_t> two(2);
+  const auto message_of_points = [&](VertexView points) {
+    return message_of<std::invalid_argument>([&] { bvh.occluded_from({}, points, two); });
+  };
+  expect_words(message_of_points(mesh.vertices), {"2", "points"});
+  expect_words(message_of_points(VertexView(nullptr, 2)), {"points", "nothing"});
+  bvh.occluded_from({}, VertexView(), {});
 }
 
 // Some from one point, some from any, by turns: fewer and more than are traced together.

@@ -4,38 +4,27 @@
 
 #include <algorithm>
 #include <set>
-#include <span>
-#include <utility>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/rational_vectors.hpp"
 #include "../queries/query_oracle.hpp"
 
 namespace raylanes::testing {
-
-inline std::vector<HitD> oracle_hits(const oracle::DoubleMesh& mesh, const RayD& ray,
-                                     Facing facing = Facing::any) {
-  return oracle::exact_double_hits(mesh, ray, facing);
-}
-inline std::vector<CrossingD> oracle_crossings(const oracle::DoubleMesh& mesh, const RayD& ray) {
-  return oracle::exact_double_crossings(mesh, ray);
-}
 
 // The corners of the edge that holds the point at which a ray meets the plane of a triangle: two, one of them where the
 // point is this corner, none between the edges.
 template <class AnyRay, class Point>
 std::set<Point> met_corners(const AnyRay& ray, const Point (&corners)[3]) {
   using namespace oracle;
-  const auto exact = [](const Point& p) { return Vector{mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])}; };
-  const Vector a = exact(corners[0]), o = exact(ray.origin), d = exact(ray.direction);
-  const Vector n = cross(exact(corners[1]) - a, exact(corners[2]) - a);
+  const Vector a = to_vector(corners[0]), o = to_vector(ray.origin), d = to_vector(ray.direction);
+  const Vector n = cross(to_vector(corners[1]) - a, to_vector(corners[2]) - a);
   const mpq_class t = dot(n, a - o) / dot(n, d);
   const Vector at{o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
   std::set<Point> met;
   bool some = false;
   for (std::size_t k = 0; k < 3; ++k) {
     const Point &p = corners[k], &q = corners[(k + 1) % 3];
-    const Vector out = cross(at - exact(p), exact(q) - exact(p));
+    const Vector out = cross(at - to_vector(p), to_vector(q) - to_vector(p));
     if (out[0] != 0 || out[1] != 0 || out[2] != 0) continue;
     const std::set<Point> edge{p, q};
     std::set<Point> both;
@@ -80,9 +69,8 @@ std::vector<AnyHit> oracle_passages(const AnyMesh& mesh, const AnyRay& ray, cons
 // The passages of all triangles but one.
 template <class AnyMesh, class AnyRay>
 auto oracle_passages(const AnyMesh& mesh, const AnyRay& ray, std::uint32_t skipped = no_primitive) {
-  auto hits = oracle_hits(mesh, ray);
-  std::erase_if(hits, [&](const auto& hit) { return hit.primitive == skipped; });
-  return oracle_passages(mesh, ray, hits, oracle_crossings(mesh, ray));
+  return oracle_passages(mesh, ray, oracle_hits(mesh, ray, Facing::any, skipped),
+                         oracle::exact_crossings(mesh, ray));
 }
 
 // From points that are multiples of a half to corners and middles of edges, which floats hold.

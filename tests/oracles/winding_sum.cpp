@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_crossings.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../queries/open_meshes.hpp"
 #include "../queries/query_trees.hpp"
 
@@ -23,18 +23,17 @@ oracle::WindingSum sum_of(const Mesh& mesh, const Float3& point) {
 }
 
 TEST(Placed, tells_faces_from_edges_and_planes) {
-  const Triangle triangle{{tilted.vertices[0], tilted.vertices[1], tilted.vertices[2]}};
+  const auto triangle = oracle::corners_of(tilted, 0);
   const auto touch = [&](const Float3& point) { return oracle::placed(triangle, point).touch; };
   EXPECT_EQ(touch({1, 1, 2}), oracle::Touch::face);
   EXPECT_EQ(touch({2, 2, 4}), oracle::Touch::edge);
   EXPECT_EQ(touch({4, 0, 4}), oracle::Touch::edge);
   EXPECT_EQ(touch({3, 3, 6}), oracle::Touch::none);
-  EXPECT_EQ(oracle::placed({{flat.vertices[0], flat.vertices[1], flat.vertices[2]}}, {3, 3, 0}).touch,
-            oracle::Touch::none)
+  EXPECT_EQ(oracle::placed(oracle::corners_of(flat, 0), Float3{3, 3, 0}).touch, oracle::Touch::none)
       << "in the box";
   EXPECT_EQ(touch({1, 1, 2.5f}), oracle::Touch::none);
-  EXPECT_EQ(oracle::placed(triangle, {3, 3, 6}).side, 0);
-  EXPECT_EQ(oracle::placed(triangle, {1, 1, 3}).side, -oracle::placed(triangle, {1, 1, 1}).side);
+  EXPECT_EQ(oracle::placed(triangle, Float3{3, 3, 6}).side, 0);
+  EXPECT_EQ(oracle::placed(triangle, Float3{1, 1, 3}).side, -oracle::placed(triangle, Float3{1, 1, 1}).side);
 }
 
 TEST(WindingSum, is_0_in_the_plane_of_one_triangle) {
@@ -84,12 +83,6 @@ TEST(WindingSum, takes_triangles_without_an_area_for_edges) {
   EXPECT_FALSE(sum_of({line.vertices, {{0, 2, 3}}}, {2, 2, 2}).is_on_edge) << "two equal corners";
 }
 
-bool is_on(const Mesh& mesh, const Float3& point) {
-  return std::ranges::any_of(mesh.triangles, [&](const Index3& t) {
-    return oracle::holds({{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}}, point);
-  });
-}
-
 // Sums in 64-bit significands have other errors. Some points are so near to edges that few digits are left.
 TEST(WindingSum, is_within_its_error) {
   const Mesh mesh = without(ellipsoid(1, {0, 0, 0}), 0.3, 7);
@@ -119,8 +112,7 @@ TEST(WindingSum, has_the_exact_side_where_doubles_have_none) {
                y = static_cast<float>(random.integer(-4000000, 4000000));
     const float step = i % 2 == 0 ? 1.0f : -1.0f;
     const Mesh mesh{{{f[0], f[1], x}, {f[1], f[2], y}, {-f[2], -f[3], step - x - y}}, {{0, 1, 2}}};
-    const oracle::Placed exact =
-        oracle::placed({{mesh.vertices[0], mesh.vertices[1], mesh.vertices[2]}}, {0, 0, 0});
+    const oracle::Placed exact = oracle::placed(oracle::corners_of(mesh, 0), Float3{0, 0, 0});
     ASSERT_NE(exact.side, 0);
     const oracle::WindingSum sum = sum_of(mesh, {0, 0, 0});
     EXPECT_NEAR(sum.number, 0.5 * exact.side, sum.error);

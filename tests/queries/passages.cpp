@@ -26,7 +26,7 @@ TEST(Passages, enter_and_leave_by_turns) {
              hit = tree.closest_crossing(rays[i], {.path = path, .after = HitView(&hit, 1)})) {
           ASSERT_TRUE(hit.t == t || winding == 0 || winding == 1) << i << " before " << hit.t;
           ASSERT_GE(hit.t, t) << i;
-          winding -= exact_side(mesh, rays[i], hit.primitive), t = hit.t;
+          winding -= oracle::exact_hit(rays[i], oracle::corners_of(mesh, hit.primitive)).side, t = hit.t;
         }
         EXPECT_EQ(winding, 0) << i;
       }

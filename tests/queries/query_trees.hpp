@@ -9,7 +9,7 @@
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../kdtree/kd_trees.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/meshes.hpp"

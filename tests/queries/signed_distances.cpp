@@ -22,9 +22,8 @@ std::vector<ExactDistance> exact_distances(const Mesh& mesh, const std::vector<F
                                            InsideRule rule) {
   std::vector<ExactDistance> exact;
   for (const Float3& point : points) {
-    ExactDistance& to = exact.emplace_back(ExactDistance{
-        sign_of(oracle::exact_location(mesh.vertices, mesh.triangles, point, {0.3f, -0.7f, 0.2f}, rule)), -1,
-        0});
+    ExactDistance& to = exact.emplace_back(
+        ExactDistance{sign_of(oracle::exact_location(mesh, point, {0.3f, -0.7f, 0.2f}, rule)), -1, 0});
     for (const Index3& corners : mesh.triangles) {
       const Triangle triangle = triangle_of(mesh.vertices, corners);
       const mpq_class square = oracle::exact_square_of_distance(point, triangle);

@@ -8,23 +8,12 @@
 
 #include <raylanes/closed_mesh.hpp>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../../dispatch/bits.hpp"
 #include "query_oracle.hpp"
 
 namespace raylanes::testing {
-using oracle::is_on, oracle::is_on_edge;  // of doubles
-
-inline bool is_on(const Mesh& mesh, const Float3& point) {
-  return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
-    return oracle::holds(triangle_of(mesh.vertices, triangle), point);
-  });
-}
-inline bool is_on_edge(const Mesh& mesh, const Float3& point) {
-  return std::ranges::any_of(mesh.triangles, [&](const Index3& triangle) {
-    return oracle::held_by(triangle_of(mesh.vertices, triangle), point) == oracle::Held::at_edge;
-  });
-}
+using oracle::is_on, oracle::is_on_edge;
 
 // The sum of all triangles' solid angles over 4π, and how much its roundings may come to: an angle's error is that of z
 // (12 roundings of numbers up to 4·|a||b||c|) over |z|. Triangles with the point inside add nothing, the mean of both
@@ -33,31 +22,15 @@ struct SummedWinding {
   long double number = 0, error = 0;
 
   SummedWinding() = default;
-  SummedWinding(const Mesh& mesh, const Float3& point) {
-    for (const Index3& triangle : mesh.triangles) {
-      const Triangle seen = triangle_of(mesh.vertices, triangle);
-      if (has_equal_corners(seen.corner[0], seen.corner[1], seen.corner[2])) continue;
-      if (oracle::held_by(seen, point) == oracle::Held::inside) continue;
-      add(
-          seen.corner, point, [] { return false; }, [&] { return oracle::placed(seen, point).side; });
-    }
-  }
-  SummedWinding(const oracle::DoubleMesh& mesh, const Double3& point) {
+  template <class AnyMesh, class Point>
+  SummedWinding(const AnyMesh& mesh, const Point& point) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const oracle::DoubleCorners corners = oracle::corners_of(mesh, i);
-      if (has_equal_corners(corners[0], corners[1], corners[2])) continue;
-      add(
-          corners, point,
-          [&] {
-            return is_on({{corners.begin(), corners.end()}, {{0, 1, 2}}}, point);
-          },
-          [&] { return oracle::side_of(corners, point); });
+      const auto corners = oracle::corners_of(mesh, i);
+      if (!has_equal_corners(corners[0], corners[1], corners[2])) add(corners, point);
     }
   }
-  // Adds a triangle of floats or doubles, whose differences are rounded once. If the point may be in the triangle's
-  // plane, is_held() says whether it is inside, and side() on which side of it, as the sign of det(a, b, c).
-  template <class Corners, class Point, class IsHeld, class Side>
-  void add(const Corners& corners, const Point& point, const IsHeld& is_held, const Side& side) {
+  // Adds a triangle of floats or doubles, whose differences are rounded once.
+  void add(const auto& corners, const auto& point) {
     long double corner[3][3], length[3];
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k)
@@ -69,10 +42,11 @@ struct SummedWinding {
                               a[2] * (b[0] * c[1] - b[1] * c[0]);
     const long double product = length[0] * length[1] * length[2];
     const bool is_beside = std::abs(determinant) <= 0x1p-55L * product;
-    if (is_beside && is_held()) return;
+    const oracle::Placed exact = is_beside ? oracle::placed(corners, point) : oracle::Placed{};
+    if (exact.touch != oracle::Touch::none) return;
     const long double real = product + dot(a, b) * length[2] + dot(b, c) * length[0] + dot(c, a) * length[1];
     // There the angle is half a turn to one side or to the other.
-    if (is_beside && real < 0) determinant = side() * std::abs(determinant);
+    if (is_beside && real < 0) determinant = exact.side * std::abs(determinant);
     number += std::atan2(determinant, real) / (2 * std::numbers::pi_v<long double>);
     const long double size = std::hypot(determinant, real);
     error += size > 0 ? 48 * 0x1p-64L * product / size : std::numeric_limits<long double>::infinity();

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
@@ -85,7 +85,7 @@ TEST(Bvh, batches_of_any_length) {
   for (std::size_t i = 0; i < rays.size(); i += 2)
     rays[i] = rays[i + 1 < rays.size() ? i + 1 : i - 1] = make_ray({0, 0, 3}, {0.1f, 0.2f, -1});
   const Bvh bvh(mesh.vertices, mesh.triangles);
-  const std::vector<Hit> expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> expected = oracle::nearest_hits(mesh, rays);
   for (std::size_t n = 0; n <= rays.size(); ++n) {
     SCOPED_TRACE(n);
     expect_hits(bvh, std::span(rays).first(n), std::span(expected).first(n));
@@ -96,7 +96,7 @@ TEST(Bvh, batches_of_any_length) {
 TEST(Bvh, segments_are_closed_at_hits_and_beside_them) {
   const Mesh mesh = triangle_soup(300, 0.4f, 29);
   const std::vector<Ray> whole = mixed_rays(mesh, by_level(600), 2, {0, 0, 0}, 30);
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, whole);
+  const std::vector<Hit> hits = oracle::nearest_hits(mesh, whole);
   std::vector<Ray> rays, coherent;  // these in runs of one ray, a box too is entered and left at one t
   for (std::size_t i = 0; i < whole.size(); ++i) {
     if (hits[i].primitive == no_primitive) continue;
@@ -128,17 +128,6 @@ TEST(Bvh, many_rays_on_two_threads) {
     for (options.threads = 2; options.threads >= 0; options.threads -= 2)
       EXPECT_TRUE(same_bytes(trace(bvh, rays, options), alone)) << name_of(options);
   }
-}
-
-// All into one octant of directions.
-TEST(Bvh, more_rays_of_a_kind_than_a_stream_holds) {
-  const Mesh mesh = triangle_soup(20, 0.5f, 45);
-  const Bvh bvh(mesh);
-  Random random(46);
-  std::vector<Ray> rays;
-  for (int i = 0; i < 8192 + 1000; ++i)
-    rays.push_back(make_ray(random.point(1), random.point(0.4f, {0.5f, 0.5f, 0.5f})));
-  expect_hits(bvh, rays, trace(bvh, rays, {.mode = TraversalMode::single}));
 }
 
 // Rays of a camera, rays to two lights by runs, and any rays: whatever a hint says of them.

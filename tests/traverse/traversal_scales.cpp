@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
@@ -146,7 +146,7 @@ TEST(Scales, lose_no_hit_where_coherent_packets_have_no_length) {
           make_ray({(static_cast<float>(i % 12) + 0.5f) / 2 * size, static_cast<float>(i / 12) / 2 * size, 0},
                    {0.25f, 0.5f, -1}));
     const Bvh bvh(mesh);
-    const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+    const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
     EXPECT_EQ(std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return !!hit; }), 144);
     expect_hits(bvh, rays, hits);
     if (size < 0x1p-126f) continue;

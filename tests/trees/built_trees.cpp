@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../accel/layout/bvh_arrays.hpp"
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/traced.hpp"

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../bench/support/oracles/exact_hit.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../../dispatch/table/numbers.hpp"
 #include "../doubles/both_numbers.hpp"
 #include "both_trees.hpp"
@@ -56,15 +56,10 @@ class Refitted : public ::testing::Test {
 
   // Rational numbers have the hits, on every path, however rays are traced. Returns how many rays hit.
   static std::size_t expect_exact(const Tree& tree, const AnyMesh& mesh, const Rays& rays) {
-    std::vector<HitOf<T>> expected;
+    const std::vector<HitOf<T>> expected = oracle::nearest_hits(mesh, rays);
     if constexpr (has_floats) {
-      expected = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
       expect_hits(tree, rays, expected);
     } else {
-      for (const RayD& ray : rays) {
-        const std::vector<HitD> all = oracle::exact_double_hits(mesh, ray);
-        expected.push_back(all.empty() ? HitD() : all[0]);
-      }
       for (const Path* path : paths_with_own_queries()) {
         std::vector<HitD> hits(rays.size());
         tree.closest(rays, hits, {.path = path});

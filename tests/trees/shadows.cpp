@@ -13,7 +13,7 @@
 #include <raylanes/kdtree.hpp>
 #include <raylanes/scene.hpp>
 
-#include "../../bench/support/oracles/exact_doubles.hpp"
+#include "../../bench/support/oracles/exact_rays.hpp"
 #include "../../bench/support/scenes/shapes.hpp"
 #include "../../dispatch/table/numbers.hpp"
 #include "../support/filtered.hpp"
@@ -284,6 +284,7 @@ TYPED_TEST(Shadows, of_lights_that_are_no_lights) {
   this->tree->occluded_from(this->points[0], this->points, dark);
   EXPECT_EQ(dark, lit) << "the light is at the point, which is on a triangle";
   std::vector<std::uint8_t> two(2);
+  EXPECT_THROW(this->tree->occluded_from(this->points[0], this->points, two), std::invalid_argument);
   EXPECT_THROW(this->tree->occluded_towards(this->points[0], this->points, two), std::invalid_argument);
   EXPECT_THROW(this->tree->occluded_towards(this->points[0], {nullptr, 2}, two), std::invalid_argument);
   this->tree->occluded_towards(this->points[0], {}, {});
@@ -304,9 +305,51 @@ TYPED_TEST(Shadows, as_rational_numbers_have_them) {
         RayD ray{{}, 0, {}, 1};
         for (std::size_t k = 0; k < 3; ++k)
           ray.origin[k] = this->points[i][k], ray.direction[k] = T(light[k] - this->points[i][k]);
-        ASSERT_EQ(dark[i], exact_double_hits(hills, ray).empty() ? 0 : 1)
+        ASSERT_EQ(dark[i], exact_hits(hills, ray).empty() ? 0 : 1)
             << "point " << i << ", light at " << distance;
       }
+    }
+  }
+}
+
+// By rays of half the length and twice the ends, whose directions are rounded here from numbers that are exact.
+TYPED_TEST(Shadows, of_segments_longer_than_the_largest_number) {
+  using T = typename TestFixture::Real;
+  using Ends = SegmentEndsOf<T>;
+  if constexpr (std::is_base_of_v<TriangleTree, TypeParam> || std::is_same_v<TypeParam, BvhD>) {
+    constexpr T largest = std::numeric_limits<T>::max(), size = T(0.66) * largest;
+    const Mesh fan = double_fan(9, 0.2f);
+    oracle::MeshOf<T> wide;
+    for (const Float3& v : fan.vertices) wide.vertices.push_back({size * v[0], size * v[1], size * v[2]});
+    wide.triangles = fan.triangles;
+    const TypeParam wide_tree(wide.vertices, wide.triangles);
+    const PointOf<T> from{T(0.97) * largest, -size, 3};
+    Random random(8);
+    const auto some = [&](double least, double most) { return static_cast<T>(random.real(least, most)); };
+    std::vector<PointOf<T>> far_points;
+    for (int i = 0; i < 300; ++i) {
+      const PointOf<T>& at = wide.vertices[random.index(wide.vertices.size())];
+      const T scale = i % 3 == 0 ? 1 : some(0.5, 1.2);  // to corners, or anywhere near them
+      far_points.push_back({T(-0.94) * largest * some(0.3, 1), scale * at[1], at[2] * some(-1, 1)});
+      if (i % 3 == 1) far_points.back() = {-from[0], -from[1] - at[1], -at[2]};  // often through zero
+    }
+    for (const Ends& ends : {Ends{}, Ends{0.25f, 0.625f}}) {
+      std::vector<std::uint8_t> expected;
+      std::size_t overflows = 0;
+      for (const PointOf<T>& point : far_points) {
+        RayOf<T> ray{point, 2 * (1 - ends.end), {}, 2 * (1 - ends.start)};
+        for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = from[k] / 2 - point[k] / 2;
+        expected.push_back(oracle::exact_hits(wide, ray).empty() ? 0 : 1);
+        overflows += std::isinf(point[0] - from[0]) ? 1 : 0;
+      }
+      this->each_way([&](const auto& options) {
+        std::vector<std::uint8_t> dark(far_points.size(), 9);
+        wide_tree.occluded_from(from, far_points, dark, ends, options);
+        EXPECT_EQ(dark, expected);
+      });
+      const auto hits = std::ranges::count(expected, 1);
+      EXPECT_TRUE(30 < hits && hits < 270) << hits;
+      EXPECT_GT(overflows, 200u);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../dispatch/table/triangles.hpp"
+#include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
 #include "judge/triangle_answers.hpp"
@@ -176,7 +177,7 @@ TEST(TriangleArrays, inactive_triangles_may_be_nowhere) {
   }
 }
 
-constexpr float bad_values[] = {nan, infinity, -infinity};
+constexpr float bad_values[] = {nan, -nan, infinity, -infinity};
 
 // Input k of 15: origin, direction, corners.
 void spoil(Ray& ray, Triangle& triangle, std::size_t k, float value) {
@@ -190,30 +191,26 @@ void spoil(Ray& ray, Triangle& triangle, std::size_t k, float value) {
 
 TEST(TriangleArrays, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_lane) {
   constexpr std::size_t n = 19;
-  for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
-    const std::vector<Ray> good_rays(n, down);
-    const std::vector<Triangle> good_triangles(n, floor_triangle);
-    const TriangleResult good = single(variant, down, floor_triangle);
-    for (std::size_t k = 0; k < 15; ++k)
-      for (const float value : bad_values) {
-        Ray ray = down;
-        Triangle triangle = floor_triangle;
-        spoil(ray, triangle, k, value);
-        EXPECT_EQ(single(variant, ray, triangle), triangle_missed)
-            << variant.name() << " input " << k << " = " << value;
-        const std::size_t lane = (k * 3) % n;
-        Results expected(n, good);
-        expected[lane] = triangle_missed;
-        if (k < 6) {
-          std::vector<Ray> rays = good_rays;
-          rays[lane] = ray;
-          EXPECT_EQ(answers(variant, rays, {&floor_triangle, 1}), expected) << variant.name();
-        } else {
-          std::vector<Triangle> triangles = good_triangles;
-          triangles[lane] = triangle;
-          EXPECT_EQ(answers(variant, {&down, 1}, triangles), expected) << variant.name();
+  for (const FloatMode mode : float_modes) {
+    const FloatModeScope scope(mode);
+    for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
+      const TriangleResult good = single(variant, down, floor_triangle);
+      for (std::size_t k = 0; k < 15; ++k)
+        for (const float value : bad_values) {
+          SCOPED_TRACE(variant.name() + " input " + std::to_string(k) + " = " + std::to_string(value));
+          Ray ray = down;
+          Triangle triangle = floor_triangle;
+          spoil(ray, triangle, k, value);
+          EXPECT_EQ(single(variant, ray, triangle), triangle_missed);
+          const std::size_t lane = (k * 3) % n;
+          std::vector<Ray> rays(k < 6 ? n : 1, down);
+          std::vector<Triangle> triangles(k < 6 ? 1 : n, floor_triangle);
+          (k < 6 ? rays[lane] : rays[0]) = ray, (k < 6 ? triangles[0] : triangles[lane]) = triangle;
+          Results expected(n, good);
+          expected[lane] = triangle_missed;
+          EXPECT_EQ(answers(variant, rays, triangles), expected);
         }
-      }
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// All triangle forms at the extremes: a table of named cases, exact edges and corners, bad numbers.
+// All triangle forms at the extremes: a table of named cases, exact edges and corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,13 +44,20 @@ const NamedCase named_cases[] = {
     {"on the plane, tmin 0", make_ray({1, 1, 0}, {0, 0, -1}), floor_triangle, NamedCase::hit, 0},
     {"on the plane, tmin > 0", make_ray({1, 1, 0}, {0, 0, -1}, 1e-30f), floor_triangle, NamedCase::miss, 0},
     {"tmin = -inf", make_ray({1, 1, 2}, {0, 0, 1}, -infinity), floor_triangle, NamedCase::hit, -2},
+    {"tmin = -inf, tmax = t", make_ray({1, 1, 2}, {0, 0, -1}, -infinity, 2), floor_triangle, NamedCase::hit,
+     2},
+    {"tmin = inf, tmax = -inf", make_ray({1, 1, 2}, {0, 0, -1}, infinity, -infinity), floor_triangle,
+     NamedCase::miss, 0},
     {"tmin > tmax", make_ray({1, 1, 2}, {0, 0, -1}, 3, 1), floor_triangle, NamedCase::miss, 0},
     {"tmin NaN", make_ray({1, 1, 2}, {0, 0, -1}, nan), floor_triangle, NamedCase::miss, 0},
     {"tmax NaN", make_ray({1, 1, 2}, {0, 0, -1}, 0, nan), floor_triangle, NamedCase::miss, 0},
     {"in the plane, crossing", make_ray({-1, 1, 0}, {1, 0, 0}), floor_triangle, NamedCase::miss, 0},
     {"in the plane, along an edge", make_ray({-1, 0, 0}, {1, 0, 0}), floor_triangle, NamedCase::miss, 0},
+    {"in the plane, aslant", make_ray({1, 1, 0}, {1, -1, 0}), floor_triangle, NamedCase::miss, 0},
     {"parallel to the plane", make_ray({-1, 1, 1}, {1, 0, 0}), floor_triangle, NamedCase::miss, 0},
     {"direction 0", make_ray({1, 1, 0}, {0, -0.0f, 0}), floor_triangle, NamedCase::miss, 0},
+    {"two corners beside the ray", make_ray({1, 1, 2}, {0, 0, -1}),
+     make_triangle({2, 2, 0}, {0, 0, 0}, {2, 2, 0}), NamedCase::miss, 0},
     {"two equal corners", make_ray({1, 1, 2}, {0, 0, -1}), make_triangle({0, 0, 0}, {4, 4, 0}, {4, 4, 0}),
      NamedCase::miss, 0},
     {"collinear", make_ray({1, 1, 2}, {0, 0, -1}), make_triangle({0, 0, 0}, {1, 1, 0}, {4, 4, 0}),
@@ -160,28 +167,6 @@ TEST(TriangleExtremes, exact_edges_and_corners_are_hit) {
         const Ray ray = ray_to({1, 2, 8}, triangle, w[0], w[1], 0.125);
         EXPECT_EQ(single(variant, ray, t).hit, hit_flag) << variant.name();
       }
-  }
-}
-
-TEST(TriangleExtremes, a_bad_number_in_any_input_is_a_miss_and_disturbs_no_other_lane) {
-  const Ray down = make_ray({1, 1, 2}, {0, 0, -1});
-  for (const FloatMode mode : float_modes) {
-    const FloatModeScope scope(mode);
-    for (const TriangleVariant& variant : all_variants<TriangleTest>())
-      for (std::size_t k = 0; k < 15; ++k)
-        for (const float bad : {nan, -nan, infinity, -infinity}) {
-          std::vector<Ray> rays(3, down);
-          std::vector<Triangle> triangles(3, floor_triangle);
-          if (k < 6)
-            (k < 3 ? rays[1].origin : rays[1].direction)[k % 3] = bad;
-          else
-            triangles[1].corner[(k - 6) / 3][k % 3] = bad;
-          const Results results = answers(variant, rays, triangles);
-          for (std::size_t i = 0; i < results.size(); ++i) {
-            const bool spoiled = k < 6 ? i % 3 == 1 : i / 3 == 1;
-            ASSERT_EQ(results[i].hit, spoiled ? 0 : hit_flag) << variant.name() << " input " << k;
-          }
-        }
   }
 }
 

@@ -1,10 +1,10 @@
-// Point and triangle: the squared distance in exact rational arithmetic.
+// Point and triangle: the squared distance in exact rational arithmetic, and what is wrong with a closest point.
 #pragma once
 
 #include <algorithm>
+#include <string>
 
-#include <raylanes/types.hpp>
-
+#include "exact_rays.hpp"
 #include "rational_vectors.hpp"
 
 namespace raylanes::oracle {
@@ -16,10 +16,6 @@ inline mpq_class exact_square_of_edge(const Vector& at, const Vector& edge) {
   if (length != 0) t = std::clamp<mpq_class>(-dot(at, edge) / length, 0, 1);
   const Vector off{at[0] + t * edge[0], at[1] + t * edge[1], at[2] + t * edge[2]};
   return dot(off, off);
-}
-
-inline Vector to_vector(const Double3& p) {
-  return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
 }
 
 // From the origin to a triangle; degenerate ones are segments or points.
@@ -39,5 +35,9 @@ inline mpq_class exact_square_of_distance(const Float3& point, const Triangle& t
   return exact_square_of_distance(to_vector(triangle.corner[0]) - p, to_vector(triangle.corner[1]) - p,
                                   to_vector(triangle.corner[2]) - p);
 }
+
+// Says which promise of ClosestPointD a closest point of a finite point breaks: it is within the bound of its triangle,
+// and no other triangle is nearer by more than that. Empty if it keeps them.
+std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point, const ClosestPointD& found);
 
 }  // namespace raylanes::oracle

@@ -10,7 +10,8 @@ namespace raylanes::oracle {
 
 using Vector = std::array<mpq_class, 3>;
 
-inline Vector to_vector(const Float3& p) {
+template <class T>
+Vector to_vector(const std::array<T, 3>& p) {
   return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])};
 }
 inline Vector operator-(const Vector& a, const Vector& b) {

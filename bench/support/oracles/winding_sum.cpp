@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "exact_crossings.hpp"
+#include "exact_rays.hpp"
 
 namespace raylanes::oracle {
 namespace {
 
-using Double3 = std::array<double, 3>;
 constexpr double u = 0x1p-53;
 
 double dot(const Double3& a, const Double3& b) {
@@ -26,11 +25,11 @@ struct SeenAngle {
   double product, real, det;
   static constexpr double det_error = 12 * u, z_error = 56 * u;  // by P
 
-  SeenAngle(const Triangle& triangle, const Float3& point) {
+  SeenAngle(const TriangleCorners<float>& corners, const Float3& point) {
     std::array<Double3, 3> corner;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        corner[i][k] = static_cast<double>(triangle.corner[i][k]) - static_cast<double>(point[k]);
+        corner[i][k] = static_cast<double>(corners[i][k]) - static_cast<double>(point[k]);
     const auto& [a, b, c] = corner;
     const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
     product = la * lb * lc;
@@ -50,10 +49,10 @@ WindingSum winding_sum(std::span<const Float3> vertices, std::span<const Index3>
   WindingSum sum;
   double sizes = 0;
   for (const Index3& t : triangles) {
-    const Triangle triangle{{vertices[t[0]], vertices[t[1]], vertices[t[2]]}};
-    SeenAngle z(triangle, point);
+    const TriangleCorners<float> corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    SeenAngle z(corners, point);
     if (std::abs(z.det) <= SeenAngle::det_error * z.product) {
-      const Placed exact = placed(triangle, point);
+      const Placed exact = placed(corners, point);
       if (exact.touch == Touch::edge) return {0, 0, true};
       if (exact.side == 0) continue;
       z.det = std::copysign(z.det, exact.side);

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <stdexcept>

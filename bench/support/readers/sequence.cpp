@@ -8,7 +8,7 @@
 #include "../../contenders/embree/embree_contender.hpp"
 #include "../../contenders/workload.hpp"
 #include "../../report/exits.hpp"
-#include "../oracles/exact_hit.hpp"
+#include "../oracles/exact_rays.hpp"
 #include "../rulers/progress.hpp"
 #include "mesh_reader.hpp"
 
@@ -116,7 +116,7 @@ std::size_t check(const Frame& frame, std::span<const Hit> hits) {
     const std::size_t at = i * hits.size() / checked_rays;
     rays.push_back(frame.rays[at]), ours.push_back(hits[at]);
   }
-  if (!same_bytes(ours, oracle::exact_hits(frame.mesh.vertices, frame.mesh.triangles, rays)))
+  if (!same_bytes(ours, oracle::nearest_hits(frame.mesh, rays)))
     throw WrongAnswers("trees --frames: frame " + std::to_string(frame.number) +
                        ": hits are not those of exact arithmetic over all triangles");
   return rays.size();

@@ -3,7 +3,6 @@
 // outside the outputs, and hits say what hits may say. The exact test has the bytes of exact arithmetic, the watertight
 // one of the reproducible grade the bytes of a brute force, each but for what its Truth leaves out.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <span>
@@ -13,7 +12,6 @@
 
 #include <raylanes/kdtree.hpp>
 
-#include "../../../bench/support/oracles/exact_hit.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../queries/query_oracle.hpp"
 #include "../../support/random_input.hpp"
@@ -104,10 +102,7 @@ bool may_be_flushed(float x) {
 // segment, a direction of nothing else, a t, u or v; a t of zero may be equalled by one.
 Truth exact_truth(const Ray& ray, const Mesh& mesh, bool flush, Facing facing, std::uint32_t skipped) {
   Truth truth;
-  if (facing == Facing::any && skipped == no_primitive)
-    truth.hit = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1))[0];
-  else
-    truth.hit = nearest_of_chosen(mesh, ray, facing, skipped);
+  truth.hit = nearest_of_chosen(mesh, ray, facing, skipped);
   truth.comparable = true;
   if (!flush) return truth;
   for (const float x : {ray.tmin, ray.tmax}) truth.comparable = truth.comparable && !is_subnormal(x);

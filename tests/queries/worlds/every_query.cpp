@@ -30,7 +30,7 @@ struct Expected {
       auto& of_ray = hits.emplace_back(side == Facing::any ? all : oracle_hits(mesh, ray, side));
       std::erase_if(all, is_skipped), std::erase_if(of_ray, is_skipped);
       occluded.push_back(of_ray.empty() ? 0 : 1);
-      auto& crossed = crossings.emplace_back(oracle_crossings(mesh, ray));
+      auto& crossed = crossings.emplace_back(oracle::exact_crossings(mesh, ray));
       auto& passed = passages.emplace_back(oracle_passages(mesh, ray, all, crossed));
       std::erase_if(passed, [&](const auto& passage) {
         return std::ranges::find(of_ray, passage.primitive, &HitOf<T>::primitive) == of_ray.end();

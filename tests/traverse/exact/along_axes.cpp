@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "../../../bench/support/oracles/exact_hit.hpp"
+#include "../../../bench/support/oracles/exact_rays.hpp"
 #include "../../queries/query_trees.hpp"
 #include "../../support/terrain.hpp"
 #include "../reference/traced.hpp"
@@ -16,7 +16,7 @@ namespace {
 TEST(AlongAxes, hits_of_every_mode_and_tree) {
   const Mesh mesh = terrain_over_a_floor();
   const std::vector<Ray> rays = rays_along_axes(mesh, by_level(240, 360, 2400), 62);
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
   EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return !!hit; }),
             static_cast<std::ptrdiff_t>(rays.size() / 3));
   for (const FloatMode mode : float_modes) {
@@ -70,7 +70,7 @@ TEST(AlongAxes, subnormal_numbers_are_not_zeros) {
   std::vector<Ray> rays;
   for (const float z : {0.0f, -0.0f, 0x1p-141f, 0x1p-140f, -0x1p-149f, 0x1p-139f})
     rays.push_back(make_ray({0, -4, z}, {0, 1, 0}));
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
   ASSERT_TRUE(hits[0] && hits[2] && !hits[4] && !hits[5]);
   expect_hits(Bvh(mesh), rays, hits);
 }
@@ -96,7 +96,7 @@ TEST(AlongAxes, corners_whose_t_doubles_round_to_half_way) {
     }
     const Mesh mesh{{{0, 0, corner}, {1, 0, corner}, {-1, 1, corner}, {-1, -1, 0}},
                     {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}};
-    const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+    const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
     ASSERT_NE(hits[0].t, hits[2].t);
     expect_hits(Bvh(mesh), rays, hits);
   }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../../../accel/batch/shared_points.hpp"
-#include "../../../bench/support/oracles/exact_hit.hpp"
+#include "../../../bench/support/oracles/exact_rays.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/soa.hpp"
@@ -129,14 +129,14 @@ TEST_P(ExactDecisions, are_those_of_rational_numbers) {
     const ExactCase c = GetParam().make(random);
     std::vector<std::vector<Hit>> of_triangle;
     for (const Index3& index : c.mesh.triangles)
-      of_triangle.push_back(oracle::exact_hits(c.mesh.vertices, std::span(&index, 1), c.rays));
-    const std::vector<Hit> nearest = oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, c.rays);
+      of_triangle.push_back(oracle::nearest_hits({c.mesh.vertices, {index}}, c.rays));
+    const std::vector<Hit> nearest = oracle::nearest_hits(c.mesh, c.rays);
     hits += static_cast<std::size_t>(
         std::count_if(nearest.begin(), nearest.end(), [](const Hit& h) { return !!h; }));
     const Bvh bvh(c.mesh);
     if (round % 4 == 1) {
       const std::vector<Ray> shared = from_one_origin(c.rays);
-      const std::vector<Hit> expected = oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, shared);
+      const std::vector<Hit> expected = oracle::nearest_hits(c.mesh, shared);
       expect_hits(bvh, shared, expected, {});
       const FloatModeScope scope(FloatMode::flush);
       expect_hits(bvh, shared, expected, {});
@@ -144,11 +144,11 @@ TEST_P(ExactDecisions, are_those_of_rational_numbers) {
     if (round % 4 == 2) {
       const std::vector<Ray> shared = to_one_end(c.rays, random);
       ends += shared_end_of(shared) ? 1u : 0u;
-      expect_hits(bvh, shared, oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, shared), {});
+      expect_hits(bvh, shared, oracle::nearest_hits(c.mesh, shared), {});
     }
     if (round % 4 == 0) {
       const std::vector<Ray> rays = with_neighbours(c.rays, random);
-      expect_hits(bvh, rays, oracle::exact_hits(c.mesh.vertices, c.mesh.triangles, rays), {});
+      expect_hits(bvh, rays, oracle::nearest_hits(c.mesh, rays), {});
     }
     for (const Grade grade : {Grade::reproducible, Grade::fast}) {
       for (const Path* path : supported_paths())
@@ -207,7 +207,7 @@ TEST(ExactDecisions, round_once_beside_halfway) {
       const float second = first + ulp;
       const Mesh mesh{{{-1, 0x1p-60f, first}, {1, 0x1p-60f, second}, {0, -1, above ? 3.0f : -3.0f}},
                       {{0, 1, 2}}};
-      const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, std::span(&ray, 1));
+      const std::vector<Hit> hits = oracle::nearest_hits(mesh, std::span(&ray, 1));
       ASSERT_EQ(hits[0].t, above ? second : first);
       expect_hits(Bvh(mesh), std::span(&ray, 1), hits, {});
       for (const Path* path : supported_paths())
@@ -219,7 +219,7 @@ TEST(ExactDecisions, round_once_beside_halfway) {
 TEST(ExactDecisions, find_what_tiny_components_reach) {
   const Mesh mesh = triangles_beside_z();
   const std::vector<Ray> rays{make_ray({0, 0, 0}, {0x1p-140f, 0, 1}), make_ray({0, 8, 0}, {0x1p-142f, 0, 1})};
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
   ASSERT_EQ(hits[0].primitive, 0u);
   ASSERT_FALSE(hits[1]);
   expect_hits(Bvh(mesh), rays, hits, {});

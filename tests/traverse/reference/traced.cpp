@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../../../bench/support/oracles/exact_hit.hpp"
+#include "../../../bench/support/oracles/exact_rays.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/supported_paths.hpp"
@@ -87,7 +87,7 @@ void expect_hits(const TriangleTree& tree, std::span<const Ray> rays, std::span<
 
 std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays, bool are_needles) {
   const Bvh bvh(mesh.vertices, mesh.triangles);
-  const std::vector<Hit> exact = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> exact = oracle::nearest_hits(mesh, rays);
   const KdTree cells(mesh), midpoint(mesh, {.builder = KdBuilder::midpoint});
   for (const TriangleTree* tree : std::initializer_list<const TriangleTree*>{&bvh, &cells, &midpoint})
     expect_hits(*tree, rays, exact);
@@ -100,7 +100,7 @@ std::size_t expect_brute_force(const Mesh& mesh, std::span<const Ray> rays, bool
 }
 
 std::size_t expect_exact_hits(const TriangleTree& tree, const Mesh& mesh, std::span<const Ray> rays) {
-  const std::vector<Hit> hits = oracle::exact_hits(mesh.vertices, mesh.triangles, rays);
+  const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
   expect_hits(tree, rays, hits);
   const FloatModeScope scope(FloatMode::flush);
   expect_hits(tree, rays, hits);
