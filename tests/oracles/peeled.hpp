@@ -59,9 +59,9 @@ auto skipping(const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, co
   };
 }
 // Asks a tree or a scene for hits, or for passages.
-template <class Tree, class AnyRay, class Skip>
-auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
-  return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest(call...); });
+template <class Tree, class AnyRay, class Skip, class... Mask>
+auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, Mask... mask) {
+  return skipping(rays, skip, [&tree, mask...](auto&&... call) { return tree.closest(call..., mask...); });
 }
 template <class Tree, class AnyRay, class Skip, class... Mask>
 auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip,

@@ -100,7 +100,7 @@ TEST(BoundedTree, visits_data_in_its_order) {
     for (const Ray& ray : rays)
       expected.push_back(
           expected_hit(scene, ray, ~0u, [&](std::uint32_t, const Ray& r) { return closest_of(r); }));
-    for (const Path* path : supported_paths()) expect_hits(scene, rays, expected, ~0u, path);
+    expect_hits(scene, rays, expected);
   }
   const BoundedTree none;
   EXPECT_TRUE(none.order().empty());

@@ -53,6 +53,8 @@ TEST(Scene, says_what_it_has) {
   EXPECT_THROW(scene.closest(rays[0], {.test = TriangleTest::directional}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays[0], {.threads = -1}), std::invalid_argument);
   EXPECT_THROW(scene.closest(rays[0], {.after = Hit()}), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, SceneHitView(hits.data(), 3, sizeof(Hit))), std::invalid_argument);
+  EXPECT_THROW(scene.closest(rays, SceneHitView(nullptr, 3)), std::invalid_argument);
 }
 
 TEST(Scene, takes_rays_as_arrays_with_a_mask_and_counts) {
@@ -80,49 +82,6 @@ TEST(Scene, takes_rays_as_arrays_with_a_mask_and_counts) {
       EXPECT_GT(counters.triangle_tests, 0u);
     }
   }
-}
-
-TEST(Scene, writes_hits_into_records_of_any_size) {
-  Random random(89);
-  const TriangleParts parts = random_parts(25, 1, 4, random);
-  const std::vector<Ray> rays = rays_to_instances(parts.scene, 500, 6, random);
-  struct Record {
-    std::uint32_t before = 7;
-    SceneHit hit = {1, 2, 3, 4, 5, 6};
-    std::uint32_t behind = 8;
-  };
-  std::vector<Record> records(rays.size());
-  parts.scene.closest(rays, SceneHitView(&records[0].hit, records.size(), sizeof(Record)));
-  const std::vector<SceneHit> expected = all_by_trees(parts, rays);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    ASSERT_TRUE(same_bytes(records[i].hit, expected[i])) << i;
-    ASSERT_EQ(records[i].before + records[i].behind, 15u) << i;
-  }
-  std::vector<SceneHit> hits(rays.size());
-  EXPECT_THROW(parts.scene.closest(rays, SceneHitView(hits.data(), hits.size(), sizeof(Hit))),
-               std::invalid_argument);
-  EXPECT_THROW(parts.scene.closest(rays, SceneHitView(nullptr, rays.size())), std::invalid_argument);
-}
-
-TEST(Scene, says_what_lies_between_a_point_and_others) {
-  Random random(90);
-  const TriangleParts parts = random_parts(25, 1, 4, random);
-  const std::vector<Ray> rays = rays_to_instances(parts.scene, 500, 6, random);
-  const SegmentEnds ends{0.25f, 0.75f};
-  std::vector<Float3> points;
-  std::vector<Ray> segments;
-  for (const Ray& ray : rays) {
-    points.push_back(ray.origin);
-    segments.push_back(segment_to<float>(rays[0].origin, ray.origin, ends));
-  }
-  std::vector<std::uint8_t> answers(points.size(), 7), expected(points.size(), 7);
-  parts.scene.occluded_from(rays[0].origin, points, answers, ends);
-  parts.scene.occluded(segments, expected);
-  EXPECT_EQ(answers, expected);
-  EXPECT_NE(std::count(answers.begin(), answers.end(), 0), 0);
-  EXPECT_NE(std::count(answers.begin(), answers.end(), 1), 0);
-  answers.pop_back();
-  EXPECT_THROW(parts.scene.occluded_from(rays[0].origin, points, answers), std::invalid_argument);
 }
 
 TEST(Scene, has_ten_thousand_instances_in_five_megabytes) {

@@ -60,7 +60,7 @@ inline TraceOptions behind(TraceOptions options, const std::vector<SceneHit>& hi
   return options;
 }
 
-// All hits of a ray in order. all_of(geometry, ray) returns the hits of a part.
+// All hits of a ray in order. all_of(geometry, ray, instance) returns the hits of an instance.
 template <class AllOf>
 std::vector<SceneHit> all_scene_hits_by(const Scene& scene, const Ray& ray, std::uint32_t mask,
                                         const AllOf& all_of) {
@@ -70,7 +70,7 @@ std::vector<SceneHit> all_scene_hits_by(const Scene& scene, const Ray& ray, std:
     const Bvh* const tree = scene.tree(instance.geometry);
     if ((instance.mask & mask) == 0 || instance.doubt < 0) continue;
     if (tree != nullptr && reaches_too_far(instance, tree->bounds())) continue;
-    for (const Hit& hit : all_of(instance.geometry, mapped_ray(ray, instance)))
+    for (const Hit& hit : all_of(instance.geometry, mapped_ray(ray, instance), i))
       all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
   }
   const auto key = [](const SceneHit& hit) { return std::tuple(hit.t, hit.instance, hit.primitive); };
@@ -81,7 +81,7 @@ std::vector<SceneHit> all_scene_hits_by(const Scene& scene, const Ray& ray, std:
 // From each instance's own tree, on the first path.
 inline std::vector<SceneHit> all_scene_hits(const Scene& scene, const Ray& ray, std::uint32_t mask,
                                             Facing facing = Facing::any) {
-  return all_scene_hits_by(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped) {
+  return all_scene_hits_by(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped, std::uint32_t) {
     return scene.tree(geometry)
         ->all_hits(std::vector<Ray>{mapped}, {.facing = facing, .path = &paths().front()})
         .items;

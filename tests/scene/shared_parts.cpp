@@ -57,7 +57,7 @@ TEST(Scene, an_original_changes_without_its_copies) {
   const Mesh moved = triangle_soup(60, 0.6f, 126);
   parts.scene.refit(0, moved.vertices, moved.triangles);
   EXPECT_EQ(parts.scene.tree(0), own) << "a tree of its own is refitted in place";
-  for (const Path* path : supported_paths()) expect_hits(copy.scene, rays, expected, ~0u, path);
+  expect_hits(copy.scene, rays, expected);
 }
 
 TEST(Scene, a_copy_outlives_its_original_and_one_of_nothing_is_empty) {
@@ -102,12 +102,12 @@ TEST(Scene, shares_trees_with_their_owners) {
   for (const Ray& ray : rays) expected.push_back(expected_hit(scene, ray, ~0u, closest_of));
   for (Scene* const each : {&scene, &other}) {
     each->update();
-    for (const Path* path : supported_paths()) expect_hits(*each, rays, expected, ~0u, path);
+    expect_hits(*each, rays, expected);
   }
   const Mesh moved = ellipsoid(1, {3, 0, 0});
   scene.refit(0, moved.vertices, moved.triangles);
   EXPECT_NE(scene.tree(0), tree.get());
-  for (const Path* path : supported_paths()) expect_hits(other, rays, expected, ~0u, path);
+  expect_hits(other, rays, expected);
 }
 
 TEST(Scene, refuses_null_pointers_to_trees) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "../expect_queries.hpp"
 #include "../triangle_parts.hpp"
 
 namespace raylanes::testing {
@@ -92,36 +93,6 @@ class Changing {
   const std::size_t masked_;
 };
 
-// Next hits, skipped ones, sides and passages, by each instance's own tree.
-void expect_other_queries(const TriangleParts& parts, const std::vector<Ray>& rays, const Path* path) {
-  const Scene& scene = parts.scene;
-  std::vector<SceneHit> nearest, second, fronts, passages, found(rays.size());
-  for (const Ray& ray : rays) {
-    const std::vector<SceneHit> all = all_scene_hits(scene, ray, ~0u),
-                                front = all_scene_hits(scene, ray, ~0u, Facing::front);
-    nearest.push_back(all.empty() ? SceneHit() : all[0]);
-    second.push_back(all.size() < 2 ? SceneHit() : all[1]);
-    fronts.push_back(front.empty() ? SceneHit() : front[0]);
-    passages.push_back(expected_hit(scene, ray, ~0u, [&](std::uint32_t geometry, const Ray& mapped) {
-      return scene.tree(geometry)->closest_crossing(mapped, {.path = &paths().front()});
-    }));
-  }
-  scene.closest(rays, found, {.path = path, .after = nearest});
-  EXPECT_TRUE(same_bytes(found, second)) << path->name;
-  scene.closest(rays, found, {.path = path, .skip = nearest});
-  EXPECT_TRUE(same_bytes(found, second)) << path->name;
-  scene.closest(rays, found, {.path = path, .facing = Facing::front});
-  EXPECT_TRUE(same_bytes(found, fronts)) << path->name;
-  scene.closest_crossing(rays, found, {.path = path});
-  EXPECT_TRUE(same_bytes(found, passages)) << path->name;
-  for (std::size_t i = 0; i < rays.size(); i += 5) {
-    EXPECT_TRUE(same_bytes(scene.closest(rays[i]), nearest[i]));
-    EXPECT_EQ(scene.occluded(rays[i]), static_cast<bool>(nearest[i]));
-    EXPECT_TRUE(same_bytes(scene.closest(rays[i], {.path = path, .after = nearest[i]}), second[i]));
-    EXPECT_TRUE(same_bytes(scene.closest(rays[i], {.path = path, .skip = nearest[i]}), second[i]));
-  }
-}
-
 TEST(CommonTree, has_the_hits_of_all_instances_whatever_changes) {
   Random random(801);
   for (const std::size_t count : {0, 1, 2, 3, 12, 40, 150}) {
@@ -133,7 +104,9 @@ TEST(CommonTree, has_the_hits_of_all_instances_whatever_changes) {
       const bool at_once = step > 0 && changing.change();
       if (step > 0 && !at_once) changing.parts.scene.update(1 + static_cast<int>(step % 2));
       expect_all(changing.parts, rays, step % 3 == 2 ? 2u : ~0u, 0);
-      expect_other_queries(changing.parts, rays, supported_paths()[step % supported_paths().size()]);
+      const Expected expected(changing.parts.scene, rays, static_cast<Facing>(step % 3), ~0u, step % 2 != 0);
+      expect_queries(changing.parts.scene, rays, expected,
+                     {.path = supported_paths()[step % supported_paths().size()]});
       if (at_once && step % 2 == 0) changing.parts.scene.update();
       if (step % 5 == 4) changing.parts.scene = Scene(changing.parts.scene);
     }

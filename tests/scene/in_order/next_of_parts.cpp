@@ -221,7 +221,7 @@ struct MixedScene {
     scene.update();
   }
   std::vector<SceneHit> all(const Ray& ray, std::uint32_t mask) const {
-    return all_scene_hits_by(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped) {
+    return all_scene_hits_by(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped, std::uint32_t) {
       if (geometry == 1) return all_of_spheres(spheres, mapped);
       if (geometry == 2) return in_order(balls.all(mapped));
       return scene.tree(0)->all_hits(std::vector<Ray>{mapped}, {.path = &paths().front()}).items;

@@ -99,19 +99,8 @@ TEST(Opened, have_the_hits_of_all_instances) {
                        random.number(-0.4f, 0.4f) - from[k];
       rays.push_back(make_ray(from, direction, i % 5 == 0 ? -0.5f : 0, i % 3 == 0 ? 0.99f : infinity));
     }
-    std::size_t hits = 0;
-    for (const std::uint32_t mask : {~0u, 2u})
-      for (const Ray& ray : rays) {
-        const SceneHit expected = parts.by_trees(ray, mask);
-        hits += expected ? 1 : 0;
-        for (const Path* path : supported_paths()) {
-          const SceneHit hit = parts.scene.closest(ray, {.path = path}, mask);
-          ASSERT_TRUE(same_bytes(hit, expected))
-              << path->name << ": " << text(hit) << ", not " << text(expected);
-          ASSERT_EQ(parts.scene.occluded(ray, {.path = path}, mask), static_cast<bool>(expected));
-        }
-      }
-    EXPECT_GT(hits, rays.size() / 8);
+    expect_all(parts, rays, ~0u, rays.size() / 8);
+    expect_all(parts, rays, 2u);
   }
 }
 

@@ -112,7 +112,7 @@ TEST(TopLevel, has_the_hits_of_all_instances_whatever_their_condition) {
     }));
   }
   EXPECT_TRUE(std::ranges::any_of(expected, [](const SceneHit& hit) { return hit && hit.instance >= 1000; }));
-  for (const Path* path : supported_paths()) expect_hits(scene, rays, expected, ~0u, path);
+  expect_hits(scene, rays, expected);
 }
 
 TEST(TopLevel, is_empty_in_a_scene_that_was_moved_from) {
