@@ -141,7 +141,15 @@ class AnyArguments {
     return options;
   }
 
-  const raylanes_point_options* point_options(bool have_rule, bool have_accuracy) {
+  // For a query with these options of C++.
+  template <class Options>
+  const raylanes_point_options* point_options() {
+    constexpr bool have_rule = requires(Options options) {
+      options.rule;
+    }
+    , have_accuracy = requires(Options options) {
+      options.accuracy;
+    };
     points_ = default_point_options();
     points_.threads = threads();
     points_.path = path();

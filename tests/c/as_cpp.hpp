@@ -90,12 +90,12 @@ class CCalls : public ::testing::Test, public Input<Number> {
   }
   // Both results with the same bytes before, of which inactive elements keep theirs.
   template <class Result, class OfC, class OfCpp>
-  void expect_same(std::size_t gap, const OfC& of_c, const OfCpp& of_cpp) {
+  void expect_same(const char* what, std::size_t gap, const OfC& of_c, const OfCpp& of_cpp) {
     Apart<Result> results(count, gap);
     std::vector<Result> expected = results.values();
-    ASSERT_EQ(of_c(results), RAYLANES_OK) << raylanes_last_message();
+    ASSERT_EQ(of_c(results), RAYLANES_OK) << what << ": " << raylanes_last_message();
     of_cpp(expected);
-    EXPECT_TRUE(same_bytes(results.values(), expected));
+    EXPECT_TRUE(same_bytes(results.values(), expected)) << what;
   }
   template <class Item>
   void expect_lists(const ListsOfC& lists, const RayLists<Item>& expected) {

@@ -6,7 +6,7 @@
 #include "../../dispatch/table/numbers.hpp"
 #include "../support/same_bytes.hpp"
 #include "any_arguments.hpp"
-#include "calls.hpp"
+#include "queries.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -14,7 +14,10 @@ namespace {
 template <class Number>
 class Caller {
   using C = CallsOf<Number>;
+  using Queries = QueriesOf<Number>;
   using Hit = HitOf<Number>;
+  template <class Query>
+  using OptionsOf = typename std::decay_t<Query>::Options;
 
  public:
   explicit Caller(Bytes& bytes)
@@ -29,21 +32,28 @@ class Caller {
   }
 
   void ask() {
+    const std::size_t group = bytes_.below(10);
     const auto* const tree = arguments_.pointer(of_c_.get());
     const std::size_t n = arguments_.count(world_.rays.size());
-    const void* const rays = arguments_.first(rays_);
-    const std::size_t kind = bytes_.below(15);
-    const std::size_t stride = arguments_.stride(rays_, kind < 8     ? sizeof(RayOf<Number>)
-                                                        : kind == 12 ? sizeof(std::uint32_t)
+    const void* const from = arguments_.first(rays_);
+    const std::size_t stride = arguments_.stride(rays_, group < 6    ? sizeof(RayOf<Number>)
+                                                        : group == 9 ? sizeof(std::uint32_t)
                                                                      : 3 * sizeof(Number));
-    if (kind < 8)
-      ask_rays(kind, tree, rays, n, stride);
-    else if (kind == 12)
-      ask_corners(tree, rays, n, stride);
-    else if (kind > 12)
-      ask_shadows(kind == 13, tree, rays, n, stride);
+    if (group < 4)
+      some_query(Queries::of_rays(), bytes_.below(4), [&](const auto& query) {
+        ask_array(query, ray_options<OptionsOf<decltype(query)>>(), world_.rays, tree, from, n, stride);
+      });
+    else if (group < 6)
+      some_query(Queries::of_lists(), bytes_.below(2),
+                 [&](const auto& query) { ask_lists(query, tree, from, n, stride); });
+    else if (group == 6)
+      ask_shadows(bytes_.chance(128), tree, from, n, stride);
+    else if (group < 9)
+      some_query(Queries::of_points(), bytes_.below(4), [&](const auto& query) {
+        ask_array(query, point_options<OptionsOf<decltype(query)>>(), points(), tree, from, n, stride);
+      });
     else
-      ask_points(kind, tree, rays, n, stride);
+      ask_corners(tree, from, n, stride);
     rays_.expect_intact("rays");
   }
 
@@ -92,59 +102,42 @@ class Caller {
   }
 
  private:
-  void ask_rays(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
-    using After = AfterRecords<Hit>;  // hits of any bits: the first ones of rays
-    const After after =
-        kind < 5 ? After(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>)) : After();
+  // The options of a call by C, and as the class takes them.
+  template <class OfC, class OfCpp>
+  struct BothOptions {
+    const OfC* c;
+    OfCpp cpp;
+  };
+  template <class Options>
+  auto ray_options() {
+    // Hits of any bits: the first ones of rays.
+    AfterRecords<Hit> after;
+    if constexpr (requires(Options options) { options.after; })
+      after = AfterRecords<Hit>(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
     const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size(), after);
-    const auto trace = arguments_.template ray_options_of_cpp<typename C::Trace>(world_.rays.size());
-    const auto list = arguments_.template ray_options_of_cpp<ListOptions>(world_.rays.size());
-    const std::size_t gap = bytes_.below(max_gap);
-    switch (kind) {
-      case 0:
-      case 1:
-        return compare<Hit>(
-            "closest", gap,
-            [&](void* hits, std::size_t apart) { return C::closest(tree, rays, n, stride, hits, apart, c); },
-            [&](auto& hits) { tree_.closest(world_.rays, hits, trace); });
-      case 2:
-        return compare<Hit>(
-            "closest_crossing", gap,
-            [&](void* hits, std::size_t apart) {
-              return C::closest_crossing(tree, rays, n, stride, hits, apart, c);
-            },
-            [&](auto& hits) { tree_.closest_crossing(world_.rays, hits, trace); });
-      case 3:
-      case 4:
-        return compare<std::uint8_t>(
-            "occluded", 0,
-            [&](void* bits, std::size_t) {
-              return C::occluded(tree, rays, n, stride, static_cast<std::uint8_t*>(bits), c);
-            },
-            [&](auto& bits) { tree_.occluded(world_.rays, bits, trace); });
-      case 5:
-        return compare_lists(
-            "all_hits", [&](raylanes_lists** lists) { return C::all_hits(tree, rays, n, stride, lists, c); },
-            [&] { return tree_.all_hits(world_.rays, list); });
-      case 6:
-        return compare<CrossingCount>(
-            "count_crossings", 0,
-            [&](void* counts, std::size_t) {
-              return C::count_crossings(tree, rays, n, stride, static_cast<raylanes_crossing_count*>(counts),
-                                        c);
-            },
-            [&](auto& counts) { tree_.count_crossings(world_.rays, counts, list); });
-      default:
-        compare_lists(
-            "crossings",
-            [&](raylanes_lists** lists) { return C::crossings(tree, rays, n, stride, lists, c); },
-            [&] { return tree_.crossings(world_.rays, list); });
-    }
+    return BothOptions<raylanes_ray_options, Options>{
+        c, arguments_.template ray_options_of_cpp<Options>(world_.rays.size())};
+  }
+  template <class Options>
+  auto point_options() {
+    const raylanes_point_options* const c = arguments_.template point_options<Options>();
+    return BothOptions<raylanes_point_options, Options>{c,
+                                                        arguments_.template point_options_of_cpp<Options>()};
+  }
+  VertexRecords<Number> points() const {
+    return {world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>)};
+  }
+
+  void ask_array(const auto& query, const auto& by, const auto& elements, const auto* tree, const void* from,
+                 std::size_t n, std::size_t stride) {
+    compare<typename std::decay_t<decltype(query)>::Result>(
+        query.name, query.has_stride ? bytes_.below(max_gap) : 0,
+        [&](void* to, std::size_t apart) { return query.of_c(tree, from, n, stride, to, apart, by.c); },
+        [&](auto& to) { query.of_cpp(tree_, elements, to, by.cpp); });
   }
 
   // The shadows of a light or of a sun, at the origins of rays.
   void ask_shadows(bool is_of_light, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
-    const VertexRecords<Number> points(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
     PointOf<Number> light;
     for (Number& number : light) number = bytes_.number<Number>();
     if (!world_.rays.empty() && bytes_.chance(192))
@@ -155,66 +148,18 @@ class Caller {
     Number* const given = fence.last<Number>(3);
     std::copy(light.begin(), light.end(), given);
     const Number* const from = arguments_.pointer(given);
-    const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size(), AfterRecords<Hit>());
-    const auto trace = arguments_.template ray_options_of_cpp<typename C::Trace>(world_.rays.size());
+    const auto by = ray_options<typename C::Trace>();
     compare<std::uint8_t>(
         is_of_light ? "occluded_from" : "occluded_towards", 0,
         [&](void* bits, std::size_t) {
           auto* const dark = static_cast<std::uint8_t*>(bits);
-          return is_of_light ? C::occluded_from(tree, from, rays, n, stride, ends.start, ends.end, dark, c)
-                             : C::occluded_towards(tree, from, rays, n, stride, dark, c);
+          return is_of_light ? C::occluded_from(tree, from, rays, n, stride, ends.start, ends.end, dark, by.c)
+                             : C::occluded_towards(tree, from, rays, n, stride, dark, by.c);
         },
         [&](auto& dark) {
-          is_of_light ? tree_.occluded_from(light, points, dark, ends, trace)
-                      : tree_.occluded_towards(light, points, dark, trace);
+          is_of_light ? tree_.occluded_from(light, points(), dark, ends, by.cpp)
+                      : tree_.occluded_towards(light, points(), dark, by.cpp);
         });
-  }
-
-  void ask_points(std::size_t kind, const auto* tree, const void* rays, std::size_t n, std::size_t stride) {
-    const VertexRecords<Number> points(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
-    const raylanes_point_options* const c = arguments_.point_options(kind == 8 || kind == 9, kind == 10);
-    switch (kind) {
-      case 8:
-        return compare<Location>(
-            "locate", 0,
-            [&](void* locations, std::size_t) {
-              return C::locate(tree, rays, n, stride, static_cast<std::uint8_t*>(locations), c);
-            },
-            [&](auto& locations) {
-              tree_.locate(points, locations, arguments_.template point_options_of_cpp<LocateOptions>());
-            });
-      case 9:
-        return compare<Number>(
-            "signed_distances", 0,
-            [&](void* distances, std::size_t) {
-              return C::signed_distances(tree, rays, n, stride, static_cast<Number*>(distances), c);
-            },
-            [&](auto& distances) {
-              tree_.signed_distances(points, distances,
-                                     arguments_.template point_options_of_cpp<typename C::Distances>());
-            });
-      case 10:
-        return compare<Number>(
-            "winding_numbers", 0,
-            [&](void* numbers, std::size_t) {
-              return C::winding_numbers(tree, rays, n, stride, static_cast<Number*>(numbers), c);
-            },
-            [&](auto& numbers) {
-              tree_.winding_numbers(points, numbers,
-                                    arguments_.template point_options_of_cpp<WindingOptions>());
-            });
-      default:
-        compare<ClosestPointOf<Number>>(
-            "closest_points", 0,
-            [&](void* closest, std::size_t) {
-              return C::closest_points(tree, rays, n, stride,
-                                       static_cast<typename C::CClosestPoint*>(closest), c);
-            },
-            [&](auto& closest) {
-              tree_.closest_points(points, closest,
-                                   arguments_.template point_options_of_cpp<typename C::Closest>());
-            });
-    }
   }
 
   // The first words of rays are primitives, of which the tree has few.
@@ -243,21 +188,21 @@ class Caller {
     results.expect_intact(what);
   }
 
-  template <class OfC, class OfCpp>
-  void compare_lists(const char* what, const OfC& of_c, const OfCpp& of_cpp) {
+  void ask_lists(const auto& query, const auto* tree, const void* from, std::size_t n, std::size_t stride) {
+    const auto by = ray_options<ListOptions>();
     const bool is_right = arguments_.are_right();
     raylanes_lists* made_by_c = nullptr;
-    const raylanes_status status = of_c(&made_by_c);
+    const raylanes_status status = query.of_c(tree, from, n, stride, &made_by_c, by.c);
     const ListsOfC lists(made_by_c);
-    arguments_.expect(what, status, is_right);
-    if ((lists != nullptr) != is_right) fail(std::string(what) + ": lists that were not made, or were");
+    arguments_.expect(query.name, status, is_right);
+    if ((lists != nullptr) != is_right) fail(std::string(query.name) + ": lists that were not made, or were");
     if (!is_right) return;
-    const auto expected = of_cpp();
+    const auto expected = query.of_cpp(tree_, world_.rays, by.cpp);
     const std::size_t* const offsets = raylanes_lists_offsets(lists.get());
     if (!std::equal(expected.offsets.begin(), expected.offsets.end(), offsets) ||
         (!expected.items.empty() && std::memcmp(raylanes_lists_items(lists.get()), expected.items.data(),
                                                 expected.items.size() * sizeof expected.items[0]) != 0))
-      fail(std::string(what) + ": other lists than the class has");
+      fail(std::string(query.name) + ": other lists than the class has");
   }
 
   void load(const std::string& file) {

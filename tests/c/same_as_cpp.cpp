@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "as_cpp.hpp"
+#include "queries.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -13,31 +14,25 @@ namespace {
 using Numbers = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(CCalls, Numbers);
 
-TYPED_TEST(CCalls, write_the_hits_of_the_classes) {
-  using C = CallsOf<TypeParam>;
-  using Hit = HitOf<TypeParam>;
-  auto* const tree = this->tree_of_c.get();
-  Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_ray_option<typename C::Trace>([&](const auto& c, const auto& options) {
-    this->template expect_same<Hit>(
-        7,
-        [&](auto& hits) {
-          return C::closest(tree, c_rays.data(), count, c_rays.stride(), hits.data(), hits.stride(), &c);
-        },
-        [&](auto& hits) { this->cpp_tree.closest(this->rays, hits, options); });
-    this->template expect_same<Hit>(
-        0,
-        [&](auto& hits) {
-          return C::closest_crossing(tree, c_rays.data(), count, c_rays.stride(), hits.data(), 0, &c);
-        },
-        [&](auto& hits) { this->cpp_tree.closest_crossing(this->rays, hits, options); });
-    this->template expect_same<std::uint8_t>(
-        0,
-        [&](auto& occluded) {
-          return C::occluded(tree, c_rays.data(), count, c_rays.stride(),
-                             static_cast<std::uint8_t*>(occluded.data()), &c);
-        },
-        [&](auto& occluded) { this->cpp_tree.occluded(this->rays, occluded, options); });
+TYPED_TEST(CCalls, write_the_results_of_the_classes) {
+  Apart<RayOf<TypeParam>>& from = this->rays_of_c;
+  const auto expect = [&](const auto& query, const auto& elements, const auto& c, const auto& options) {
+    for (const std::size_t gap : {0, query.has_stride ? 7 : 0})
+      this->template expect_same<typename std::decay_t<decltype(query)>::Result>(
+          query.name, gap,
+          [&](auto& to) {
+            return query.of_c(this->tree_of_c.get(), from.data(), count, from.stride(), to.data(),
+                              gap == 0 ? 0 : to.stride(), &c);
+          },
+          [&](auto& to) { query.of_cpp(this->cpp_tree, elements, to, options); });
+  };
+  each_query(QueriesOf<TypeParam>::of_rays(), [&](const auto& query) {
+    this->template each_ray_option<typename std::decay_t<decltype(query)>::Options>(
+        [&](const auto& c, const auto& options) { expect(query, this->rays, c, options); });
+  });
+  each_query(QueriesOf<TypeParam>::of_points(), [&](const auto& query) {
+    this->template each_point_option<typename std::decay_t<decltype(query)>::Options>(
+        [&](const auto& c, const auto& options) { expect(query, this->points(), c, options); });
   });
 }
 
@@ -51,7 +46,7 @@ TYPED_TEST(CCalls, write_the_shadows_of_the_classes) {
   for (const SegmentEndsOf<TypeParam> ends : {SegmentEndsOf<TypeParam>{}, {TypeParam(0.25), TypeParam(0.75)}})
     this->template each_ray_option<typename C::Trace>([&](const auto& c, const auto& options) {
       this->template expect_same<std::uint8_t>(
-          0,
+          "occluded_from", 0,
           [&](auto& occluded) {
             return C::occluded_from(this->tree_of_c.get(), static_cast<const TypeParam*>(from.data()),
                                     c_points.data(), count, c_points.stride(), ends.start, ends.end,
@@ -61,7 +56,7 @@ TYPED_TEST(CCalls, write_the_shadows_of_the_classes) {
             this->cpp_tree.occluded_from(light, this->points(), occluded, ends, options);
           });
       this->template expect_same<std::uint8_t>(
-          0,
+          "occluded_towards", 0,
           [&](auto& occluded) {
             return C::occluded_towards(this->tree_of_c.get(), static_cast<const TypeParam*>(towards.data()),
                                        c_points.data(), count, c_points.stride(),
@@ -131,36 +126,18 @@ TYPED_TEST(CCalls, write_the_hits_of_one_ray) {
 }
 
 TYPED_TEST(CCalls, make_the_lists_of_the_classes) {
-  using C = CallsOf<TypeParam>;
-  auto* const tree = this->tree_of_c.get();
-  Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_ray_option<ListOptions>([&](raylanes_ray_options c, ListOptions options) {
-    for (const std::size_t most : {std::size_t{0}, std::size_t{2}, std::size_t{1} << 32, SIZE_MAX}) {
-      c.max_count = most;
-      options.max_count = static_cast<std::uint32_t>(std::min<std::size_t>(most, 0xffffffffu));
-      this->expect_lists(made<ListsOfC>([&](raylanes_lists** lists) {
-                           C::all_hits(tree, c_rays.data(), count, c_rays.stride(), lists, &c);
-                         }),
-                         this->cpp_tree.all_hits(this->rays, options));
-      this->expect_lists(made<ListsOfC>([&](raylanes_lists** lists) {
-                           C::crossings(tree, c_rays.data(), count, c_rays.stride(), lists, &c);
-                         }),
-                         this->cpp_tree.crossings(this->rays, options));
-    }
-  });
-}
-
-TYPED_TEST(CCalls, count_the_crossings_of_the_classes) {
-  using C = CallsOf<TypeParam>;
-  this->template each_ray_option<ListOptions>([&](const auto& c, const auto& options) {
-    this->template expect_same<CrossingCount>(
-        0,
-        [&](auto& counts) {
-          return C::count_crossings(this->tree_of_c.get(), this->rays_of_c.data(), count,
-                                    this->rays_of_c.stride(),
-                                    static_cast<raylanes_crossing_count*>(counts.data()), &c);
-        },
-        [&](auto& counts) { this->cpp_tree.count_crossings(this->rays, counts, options); });
+  Apart<RayOf<TypeParam>>& from = this->rays_of_c;
+  each_query(QueriesOf<TypeParam>::of_lists(), [&](const auto& query) {
+    this->template each_ray_option<ListOptions>([&](raylanes_ray_options c, ListOptions options) {
+      for (const std::size_t most : {std::size_t{0}, std::size_t{2}, std::size_t{1} << 32, SIZE_MAX}) {
+        c.max_count = most;
+        options.max_count = static_cast<std::uint32_t>(std::min<std::size_t>(most, 0xffffffffu));
+        this->expect_lists(made<ListsOfC>([&](raylanes_lists** lists) {
+                             query.of_c(this->tree_of_c.get(), from.data(), count, from.stride(), lists, &c);
+                           }),
+                           query.of_cpp(this->cpp_tree, this->rays, options));
+      }
+    });
   });
 }
 
@@ -169,7 +146,7 @@ TYPED_TEST(CCalls, write_the_corners_and_the_box_of_the_classes) {
   std::vector<HitOf<TypeParam>> hits(count);
   this->cpp_tree.closest(this->rays, hits);
   this->template expect_same<typename C::Corners>(
-      0,
+      "corners", 0,
       [&](auto& corners) {
         return C::corners(this->tree_of_c.get(), &hits[0].primitive, count, sizeof hits[0],
                           static_cast<TypeParam*>(corners.data()));
@@ -179,54 +156,6 @@ TYPED_TEST(CCalls, write_the_corners_and_the_box_of_the_classes) {
   PointOf<TypeParam> lo{}, hi{};
   ASSERT_EQ(C::bounds(this->tree_of_c.get(), lo.data(), hi.data()), RAYLANES_OK);
   EXPECT_TRUE(same_bytes(lo, box.lo) && same_bytes(hi, box.hi));
-}
-
-TYPED_TEST(CCalls, write_the_places_of_the_classes) {
-  using C = CallsOf<TypeParam>;
-  auto* const tree = this->tree_of_c.get();
-  Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_point_option<LocateOptions>([&](const auto& c, const auto& options) {
-    this->template expect_same<Location>(
-        0,
-        [&](auto& locations) {
-          return C::locate(tree, c_rays.data(), count, c_rays.stride(),
-                           static_cast<std::uint8_t*>(locations.data()), &c);
-        },
-        [&](auto& locations) { this->cpp_tree.locate(this->points(), locations, options); });
-  });
-  this->template each_point_option<WindingOptions>([&](const auto& c, const auto& options) {
-    this->template expect_same<TypeParam>(
-        0,
-        [&](auto& numbers) {
-          return C::winding_numbers(tree, c_rays.data(), count, c_rays.stride(),
-                                    static_cast<TypeParam*>(numbers.data()), &c);
-        },
-        [&](auto& numbers) { this->cpp_tree.winding_numbers(this->points(), numbers, options); });
-  });
-}
-
-TYPED_TEST(CCalls, write_the_distances_of_the_classes) {
-  using C = CallsOf<TypeParam>;
-  auto* const tree = this->tree_of_c.get();
-  Apart<RayOf<TypeParam>>& c_rays = this->rays_of_c;
-  this->template each_point_option<typename C::Distances>([&](const auto& c, const auto& options) {
-    this->template expect_same<TypeParam>(
-        0,
-        [&](auto& distances) {
-          return C::signed_distances(tree, c_rays.data(), count, c_rays.stride(),
-                                     static_cast<TypeParam*>(distances.data()), &c);
-        },
-        [&](auto& distances) { this->cpp_tree.signed_distances(this->points(), distances, options); });
-  });
-  this->template each_point_option<typename C::Closest>([&](const auto& c, const auto& options) {
-    this->template expect_same<ClosestPointOf<TypeParam>>(
-        0,
-        [&](auto& closest) {
-          return C::closest_points(tree, c_rays.data(), count, c_rays.stride(),
-                                   static_cast<typename C::CClosestPoint*>(closest.data()), &c);
-        },
-        [&](auto& closest) { this->cpp_tree.closest_points(this->points(), closest, options); });
-  });
 }
 
 TYPED_TEST(CCalls, build_refit_and_save_the_trees_of_the_classes) {
