@@ -128,11 +128,10 @@ class CheckedCall {
     keep_apart(call, Extent(hits));
     options.after = apart_.after(options.after, options.active, Extent(hits));
   }
-  // what_rays: the word for the rays in messages.
-  CheckedCall(const char* call, const RaySourceOf<T>& given, const char* what_rays,
-              std::span<std::uint8_t> occluded, const Options& by)
+  CheckedCall(const char* call, const RaySourceOf<T>& given, std::span<std::uint8_t> occluded,
+              const Options& by)
       : CheckedCall(call, given, by) {
-    require_occluded(call, occluded, what_rays, rays.size());
+    require_occluded(call, occluded, rays.name(), rays.size());
     keep_apart(call, Extent(occluded));
   }
   CheckedCall(const char* call, const RaySourceOf<T>& given, std::span<CrossingCount> counts,

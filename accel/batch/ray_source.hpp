@@ -81,6 +81,8 @@ struct RaySourceOf {
   std::size_t size() const {
     return arrays != nullptr ? arrays->size : segments != nullptr ? segments->points.count : records.count;
   }
+  // In messages.
+  const char* name() const { return segments != nullptr ? "points" : "rays"; }
   const PointOf<T>* shared_end() const { return segments != nullptr ? segments->shared_end() : nullptr; }
   // The sides that count for the rays: segments are seen from the end that they share.
   Facing sides(Facing facing) const {
@@ -107,6 +109,24 @@ struct RaySourceOf {
 };
 using Segments = SegmentsOf<float>;
 using RaySource = RaySourceOf<float>;
+
+// The rays of a call with options, for as long as the call lasts.
+template <class AnyRay, class Options>
+RaySourceOf<decltype(AnyRay::tmin)> source_of(const RayRecords<AnyRay>& rays, const Options& options) {
+  return {.records = rays, .active = options.active, .skip = options.skip};
+}
+template <class Options>
+RaySource source_of(const RayArrays& rays, const Options& options) {
+  return {.arrays = &rays, .active = options.active, .skip = options.skip};
+}
+template <class Options>
+RaySourceOf<double> source_of(const RayArraysD& rays, const Options& options) {
+  return {.arrays = &rays, .active = options.active, .skip = options.skip};
+}
+template <class T, class Options>
+RaySourceOf<T> source_of(const SegmentsOf<T>& segments, const Options& options) {
+  return {.segments = &segments, .active = options.active, .skip = options.skip};
+}
 
 template <class Source>
 void require_rays(const char* call, const Source& rays) {

@@ -86,12 +86,10 @@ const DoubleRayKernels& checked_kernels(const TraceOptionsD& options);
 // Whether all triangles count for all rays.
 bool takes_all(const TraceOptionsD& options);
 
-// As BvhD::closest() and BvhD::occluded(). what: the word for the rays in messages.
+// As BvhD::closest() and BvhD::occluded().
 void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
                 const TraceOptionsD& options);
-void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const TraceOptionsD& options);
-void trace_segments(const DoubleTreeView& tree, const SegmentsOf<double>& segments,
+void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& rays,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options);
 
 }  // namespace raylanes

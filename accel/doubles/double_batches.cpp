@@ -117,9 +117,9 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, co
                });
 }
 
-void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given, const char* what,
+void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
-  const CheckedCall checked("trace", given, what, occluded, options);
+  const CheckedCall checked("trace", given, occluded, options);
   const RaySourceOf<double>& rays = checked.rays;
   const DoubleRayKernels& kernels = checked_kernels(options);
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
@@ -136,12 +136,6 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given
         else
           kernels.any(tree, batch);
       });
-}
-void trace_segments(const DoubleTreeView& tree, const SegmentsOf<double>& segments,
-                    std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
-  require_points("trace", segments.points);
-  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                 occluded, options);
 }
 
 }  // namespace raylanes

@@ -13,31 +13,25 @@ Surface<double> surface_of(const std::unique_ptr<BvhDArrays>& tree) {
 }  // namespace
 
 RayLists<HitD> BvhD::all_hits(RayViewD rays, const ListOptions& options) const {
-  return hits_of<double>(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip},
-                         options);
+  return hits_of<double>(view_of(tree_), source_of(rays, options), options);
 }
 RayLists<HitD> BvhD::all_hits(const RayArraysD& rays, const ListOptions& options) const {
-  return hits_of<double>(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip},
-                         options);
+  return hits_of<double>(view_of(tree_), source_of(rays, options), options);
 }
 
 RayLists<CrossingD> BvhD::crossings(RayViewD rays, const ListOptions& options) const {
-  return crossings_of<CrossingD, double>(
-      view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, options);
+  return crossings_of<CrossingD, double>(view_of(tree_), source_of(rays, options), options);
 }
 RayLists<CrossingD> BvhD::crossings(const RayArraysD& rays, const ListOptions& options) const {
-  return crossings_of<CrossingD, double>(
-      view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
+  return crossings_of<CrossingD, double>(view_of(tree_), source_of(rays, options), options);
 }
 
 void BvhD::count_crossings(RayViewD rays, std::span<CrossingCount> counts, const ListOptions& options) const {
-  count_crossings_of<double>(
-      view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, counts, options);
+  count_crossings_of<double>(view_of(tree_), source_of(rays, options), counts, options);
 }
 void BvhD::count_crossings(const RayArraysD& rays, std::span<CrossingCount> counts,
                            const ListOptions& options) const {
-  count_crossings_of<double>(
-      view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, counts, options);
+  count_crossings_of<double>(view_of(tree_), source_of(rays, options), counts, options);
 }
 
 void BvhD::locate(VertexViewD points, std::span<Location> locations, const LocateOptions& options) const {

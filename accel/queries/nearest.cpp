@@ -118,17 +118,12 @@ bool is_usual_but_chosen(const TraceOptions& options) {
 bool is_quick(const TreeView* ready) {
   return ready != nullptr && !QuietFloats::are_wanted();
 }
-void trace_occluded(const TracedTree& tree, const RaySource& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const TraceOptions& options) {
-  const CheckedCall call("trace", rays, what, occluded, options);
+void trace_occluded(const TracedTree& tree, const RaySource& rays, std::span<std::uint8_t> occluded,
+                    const TraceOptions& options) {
+  const CheckedCall call("trace", rays, occluded, options);
   Traversal traversal = checked_traversal(tree, call.options);
   traversal.choice.facing = rays.sides(options.facing);
   trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
-}
-void trace_segments(const TracedTree& tree, const Segments& segments, std::span<std::uint8_t> occluded,
-                    const TraceOptions& options) {
-  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                 occluded, options);
 }
 
 }  // namespace
@@ -249,28 +244,26 @@ bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& optio
 }
 
 void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
-  trace_hits(traced(), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(traced(), source_of(rays, options), hits, options);
 }
 void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  trace_hits(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(traced(), source_of(rays, options), hits, options);
 }
 void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  trace_occluded(traced(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(traced(), source_of(rays, options), occluded, options);
 }
 void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
-  trace_occluded(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(traced(), source_of(rays, options), occluded, options);
 }
 void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                  const SegmentEnds& ends, const TraceOptions& options) const {
-  trace_segments(traced(), {from, points, ends}, occluded, options);
+  trace_occluded(traced(), source_of(Segments{from, points, ends}, options), occluded, options);
 }
 void TriangleTree::occluded_towards(const Float3& direction, VertexView points,
                                     std::span<std::uint8_t> occluded, const TraceOptions& options) const {
-  trace_segments(traced(), {direction, points, {}, true}, occluded, options);
+  trace_occluded(traced(), source_of(Segments{direction, points, {}, true}, options), occluded, options);
 }
 
 Box TriangleTree::bounds() const noexcept {

@@ -74,13 +74,11 @@ Hit TriangleTree::closest_crossing(const Ray& ray, const TraceOptions& options) 
 }
 void TriangleTree::closest_crossing(RayView rays, HitView hits, const TraceOptions& options) const {
   require_exact(options);
-  closest_passages<float>(*this, traced(), {.records = rays, .active = options.active, .skip = options.skip},
-                          hits, options);
+  closest_passages<float>(*this, traced(), source_of(rays, options), hits, options);
 }
 void TriangleTree::closest_crossing(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
   require_exact(options);
-  closest_passages<float>(*this, traced(), {.arrays = &rays, .active = options.active, .skip = options.skip},
-                          hits, options);
+  closest_passages<float>(*this, traced(), source_of(rays, options), hits, options);
 }
 
 }  // namespace raylanes

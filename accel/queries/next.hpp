@@ -61,34 +61,23 @@ struct FilteredCall {
   // RayRecords or RayArraysOf<T>.
   template <class Rays>
   void closest(const Rays& rays, const HitRecords<AnyHit>& hits) const {
-    const CheckedCall checked(call, source_of(rays), hits, options);
+    const CheckedCall checked(call, source_of(rays, options), hits, options);
     find(checked.rays, hits, checked.options);
   }
   template <class Rays>
   void occluded(const Rays& rays, std::span<std::uint8_t> occluded) const {
-    find_occluded(source_of(rays), "rays", occluded);
+    find_occluded(source_of(rays, options), occluded);
   }
   void occluded_from(const PointOf<T>& from, const VertexRecords<T>& points, std::span<std::uint8_t> occluded,
                      const SegmentEndsOf<T>& ends) const {
-    find_segments({from, points, ends}, occluded);
+    find_occluded(source_of(SegmentsOf<T>{from, points, ends}, options), occluded);
   }
   void occluded_towards(const PointOf<T>& direction, const VertexRecords<T>& points,
                         std::span<std::uint8_t> occluded) const {
-    find_segments({direction, points, {}, true}, occluded);
+    find_occluded(source_of(SegmentsOf<T>{direction, points, {}, true}, options), occluded);
   }
 
  private:
-  RaySourceOf<T> source_of(const RayRecords<RayOf<T>>& rays) const {
-    return {.records = rays, .active = options.active, .skip = options.skip};
-  }
-  RaySourceOf<T> source_of(const RayArraysOf<T>& rays) const {
-    return {.arrays = &rays, .active = options.active, .skip = options.skip};
-  }
-  void find_segments(const SegmentsOf<T>& segments, std::span<std::uint8_t> occluded) const {
-    require_points(call, segments.points);
-    find_occluded({.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                  occluded);
-  }
   void find(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Options& by) const {
     trace(rays, hits, by);
     if constexpr (!std::is_same_v<Lists, NoLists>)
@@ -104,10 +93,10 @@ struct FilteredCall {
                      trace({.records = some, .skip = again.skip}, last, again);
                    });
   }
-  void find_occluded(const RaySourceOf<T>& rays, const char* what, std::span<std::uint8_t> occluded) const {
+  void find_occluded(const RaySourceOf<T>& rays, std::span<std::uint8_t> occluded) const {
     Options by = options;
     if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
-    const CheckedCall checked(call, rays, what, occluded, by);
+    const CheckedCall checked(call, rays, occluded, by);
     occluded_by_filter<AnyHit>(checked.rays, occluded, checked.options,
                                [&](const HitRecords<AnyHit>& hits, const Options& from_the_first) {
                                  find(checked.rays, hits, from_the_first);

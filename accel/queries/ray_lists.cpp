@@ -29,29 +29,25 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
 }
 
 RayLists<Crossing> TriangleTree::crossings(RayView rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(
-      traced(), {.records = rays, .active = options.active, .skip = options.skip}, options);
+  return crossings_of<Crossing, float>(traced(), source_of(rays, options), options);
 }
 RayLists<Crossing> TriangleTree::crossings(const RayArrays& rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(
-      traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
+  return crossings_of<Crossing, float>(traced(), source_of(rays, options), options);
 }
 void TriangleTree::count_crossings(RayView rays, std::span<CrossingCount> counts,
                                    const ListOptions& options) const {
-  count_crossings_of<float>(traced(), {.records = rays, .active = options.active, .skip = options.skip},
-                            counts, options);
+  count_crossings_of<float>(traced(), source_of(rays, options), counts, options);
 }
 void TriangleTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
                                    const ListOptions& options) const {
-  count_crossings_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip},
-                            counts, options);
+  count_crossings_of<float>(traced(), source_of(rays, options), counts, options);
 }
 
 RayLists<Hit> TriangleTree::all_hits(RayView rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), {.records = rays, .active = options.active, .skip = options.skip}, options);
+  return hits_of<float>(traced(), source_of(rays, options), options);
 }
 RayLists<Hit> TriangleTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), {.arrays = &rays, .active = options.active, .skip = options.skip}, options);
+  return hits_of<float>(traced(), source_of(rays, options), options);
 }
 
 std::size_t TriangleTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,

@@ -75,13 +75,13 @@ BoundedTree::BoundedTree(std::span<const Box> boxes, const BoundedBuildOptions& 
 
 void BoundedTree::closest(RayView rays, HitView hits, LeafFunction visit, void* context,
                           const VisitOptions& options) const {
-  visit_hits("bounded tree", {.records = rays, .active = options.active, .skip = options.skip}, hits, options,
+  visit_hits("bounded tree", source_of(rays, options), hits, options,
              tracer_of(tree_.get(), {visit, context}));
 }
 void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> occluded, LeafFunction visit, void* context,
                            const VisitOptions& options) const {
-  visit_occluded("bounded tree", {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options, tracer_of(tree_.get(), {visit, context}));
+  visit_occluded("bounded tree", source_of(rays, options), occluded, options,
+                 tracer_of(tree_.get(), {visit, context}));
 }
 Hit BoundedTree::closest(const Ray& ray, LeafFunction visit, void* context,
                          const VisitOptions& options) const {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 #include <raylanes/scene.hpp>
 
@@ -44,16 +43,12 @@ void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink,
         trace_scene(counted, batch);
       });
 }
-void trace_occluded(const SceneParts& scene, const RaySource& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const TraceOptions& options, std::uint32_t mask) {
-  const CheckedCall call("scene", rays, what, occluded, options);
+void trace_occluded(const SceneParts& scene, const RaySource& rays, std::span<std::uint8_t> occluded,
+                    const TraceOptions& options, std::uint32_t mask) {
+  const CheckedCall call("scene", rays, occluded, options);
   SceneQuery query = checked_query(scene, call.options, mask);
   query.choice.facing = rays.sides(options.facing);
   trace_all(query, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
-}
-void trace_segments(const SceneParts& scene, const Segments& segments, std::span<std::uint8_t> occluded,
-                    const TraceOptions& options, std::uint32_t mask) {
-  trace_occluded(scene, {.segments = &segments, .active = options.active}, "points", occluded, options, mask);
 }
 
 // Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
@@ -191,19 +186,21 @@ void Scene::closest(const RayArrays& rays, SceneHitView hits, const TraceOptions
 }
 void Scene::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_occluded(parts(), {.records = rays, .active = options.active}, "rays", occluded, options, mask);
+  trace_occluded(parts(), {.records = rays, .active = options.active}, occluded, options, mask);
 }
 void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const TraceOptions& options,
                      std::uint32_t mask) const {
-  trace_occluded(parts(), {.arrays = &rays, .active = options.active}, "rays", occluded, options, mask);
+  trace_occluded(parts(), {.arrays = &rays, .active = options.active}, occluded, options, mask);
 }
 void Scene::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                           const SegmentEnds& ends, const TraceOptions& options, std::uint32_t mask) const {
-  trace_segments(parts(), {from, points, ends}, occluded, options, mask);
+  const Segments segments{from, points, ends};
+  trace_occluded(parts(), {.segments = &segments, .active = options.active}, occluded, options, mask);
 }
 void Scene::occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
                              const TraceOptions& options, std::uint32_t mask) const {
-  trace_segments(parts(), {direction, points, {}, true}, occluded, options, mask);
+  const Segments segments{direction, points, {}, true};
+  trace_occluded(parts(), {.segments = &segments, .active = options.active}, occluded, options, mask);
 }
 
 Box Scene::bounds() const noexcept {

@@ -2,7 +2,6 @@
 // save themselves. docs/tree_file.md has the format.
 #include <istream>
 #include <ostream>
-#include <stdexcept>
 #include <string>
 
 #include "../../dispatch/quiet_floats.hpp"

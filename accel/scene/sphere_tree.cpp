@@ -118,20 +118,13 @@ void trace_hits(const SphereTreeArrays* tree, const RaySource& rays, const HitVi
     trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
   });
 }
-void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, const char* what,
-                    std::span<std::uint8_t> occluded, const VisitOptions& options) {
-  visit_occluded("sphere tree", rays, what, occluded, options,
+void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, std::span<std::uint8_t> occluded,
+                    const VisitOptions& options) {
+  visit_occluded("sphere tree", rays, occluded, options,
                  [&](const KernelTable& kernels, const GeometryBatch& batch) {
                    trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
                  });
 }
-void trace_segments(const SphereTreeArrays* tree, const Segments& segments, std::span<std::uint8_t> occluded,
-                    const VisitOptions& options) {
-  require_points("sphere tree", segments.points);
-  trace_occluded(tree, {.segments = &segments, .active = options.active, .skip = options.skip}, "points",
-                 occluded, options);
-}
-
 auto filtered(const SphereTreeArrays* tree, const HitFilter& filter, const VisitOptions& options) {
   const auto trace = [tree](const RaySource& rays, const HitView& hits, const VisitOptions& by) {
     trace_hits(tree, rays, hits, by);
@@ -209,27 +202,25 @@ bool SphereTree::occluded(const Ray& ray, const VisitOptions& options) const {
   return is_occluded != 0;
 }
 void SphereTree::closest(RayView rays, HitView hits, const VisitOptions& options) const {
-  trace_hits(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(tree_.get(), source_of(rays, options), hits, options);
 }
 void SphereTree::closest(const RayArrays& rays, HitView hits, const VisitOptions& options) const {
-  trace_hits(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
+  trace_hits(tree_.get(), source_of(rays, options), hits, options);
 }
 void SphereTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const VisitOptions& options) const {
-  trace_occluded(tree_.get(), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(tree_.get(), source_of(rays, options), occluded, options);
 }
 void SphereTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
                           const VisitOptions& options) const {
-  trace_occluded(tree_.get(), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(tree_.get(), source_of(rays, options), occluded, options);
 }
 void SphereTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
                                const SegmentEnds& ends, const VisitOptions& options) const {
-  trace_segments(tree_.get(), {from, points, ends}, occluded, options);
+  trace_occluded(tree_.get(), source_of(Segments{from, points, ends}, options), occluded, options);
 }
 void SphereTree::occluded_towards(const Float3& direction, VertexView points,
                                   std::span<std::uint8_t> occluded, const VisitOptions& options) const {
-  trace_segments(tree_.get(), {direction, points, {}, true}, occluded, options);
+  trace_occluded(tree_.get(), source_of(Segments{direction, points, {}, true}, options), occluded, options);
 }
 
 Hit SphereTree::closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,

@@ -63,9 +63,9 @@ void visit_hits(const char* what, const RaySource& rays, const HitView& hits, co
   visit_parts(what, call.rays, HitSink<Hit>{hits}, call.options, trace);
 }
 template <class Trace>
-void visit_occluded(const char* what, const RaySource& rays, const char* what_rays,
-                    std::span<std::uint8_t> occluded, const VisitOptions& options, const Trace& trace) {
-  const CheckedCall call(what, rays, what_rays, occluded, options);
+void visit_occluded(const char* what, const RaySource& rays, std::span<std::uint8_t> occluded,
+                    const VisitOptions& options, const Trace& trace) {
+  const CheckedCall call(what, rays, occluded, options);
   visit_parts(what, call.rays, SpanSink<std::uint8_t>{occluded}, call.options, trace);
 }
 // The options of a call with one ray.

@@ -143,41 +143,37 @@ RayCalls<BvhD> BvhD::calls(const TraceOptionsD& options) const& {
 }
 
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, hits,
-             options);
+  trace_hits(view_of(tree_), source_of(rays, options), hits, options);
 }
 void BvhD::closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
-  trace_hits(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, hits,
-             options);
+  trace_hits(view_of(tree_), source_of(rays, options), hits, options);
 }
 void BvhD::occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.records = rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(view_of(tree_), source_of(rays, options), occluded, options);
 }
 void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,
                     const TraceOptionsD& options) const {
-  trace_occluded(view_of(tree_), {.arrays = &rays, .active = options.active, .skip = options.skip}, "rays",
-                 occluded, options);
+  trace_occluded(view_of(tree_), source_of(rays, options), occluded, options);
 }
 void BvhD::occluded_from(const Double3& from, VertexViewD points, std::span<std::uint8_t> occluded,
                          const SegmentEndsD& ends, const TraceOptionsD& options) const {
-  trace_segments(view_of(tree_), {from, points, ends}, occluded, options);
+  trace_occluded(view_of(tree_), source_of(SegmentsOf<double>{from, points, ends}, options), occluded,
+                 options);
 }
 void BvhD::occluded_towards(const Double3& direction, VertexViewD points, std::span<std::uint8_t> occluded,
                             const TraceOptionsD& options) const {
-  trace_segments(view_of(tree_), {direction, points, {}, true}, occluded, options);
+  trace_occluded(view_of(tree_), source_of(SegmentsOf<double>{direction, points, {}, true}, options),
+                 occluded, options);
 }
 
 HitD BvhD::closest_crossing(const RayD& ray, const TraceOptionsD& options) const {
   return closest_passage<double>(*this, ray, options);
 }
 void BvhD::closest_crossing(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
-  closest_passages<double>(*this, view_of(tree_),
-                           {.records = rays, .active = options.active, .skip = options.skip}, hits, options);
+  closest_passages<double>(*this, view_of(tree_), source_of(rays, options), hits, options);
 }
 void BvhD::closest_crossing(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
-  closest_passages<double>(*this, view_of(tree_),
-                           {.arrays = &rays, .active = options.active, .skip = options.skip}, hits, options);
+  closest_passages<double>(*this, view_of(tree_), source_of(rays, options), hits, options);
 }
 
 // options: null for the default ones.
