@@ -75,3 +75,7 @@ RTC_API void rtcRetainBVH(RTCBVH) {
 RTC_API void rtcReleaseBVH(RTCBVH) {
   no_builder();
 }
+// Embree exports this, too, but declares it nowhere.
+RTC_API void rtcMakeStaticBVH(RTCBVH) {
+  no_builder();
+}
