@@ -1,5 +1,6 @@
 // The rows of roots, triangles, boxes and spheres.
 #include <raylanes/boxes.hpp>
+#include <raylanes/prepared_ray.hpp>
 #include <raylanes/roots.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
@@ -201,6 +202,14 @@ auto ask_with(const Query& query) {
   };
 }
 
+// ask(ray, prepared ray, n) for as many primitives as prepared rays take: two rows, that which prepares and the call.
+template <class Ask>
+void check_prepared(const Path& path, const Ask& ask) {
+  for (const Ray& ray : RayColumns().elements)
+    for (const std::size_t n : sizes)
+      if (n <= PreparedRay::max_primitives) ask(ray, PreparedRay(ray, &path), n);
+}
+
 TEST_P(EveryRow, of_boxes) {
   const auto ask = ask_with([](const auto&... call) { intervals(call...); });
   for (const BoxTestInfo& info : box_tests) {
@@ -208,6 +217,18 @@ TEST_P(EveryRow, of_boxes) {
                  ask);
     count(4 * grade_names.size());
   }
+  const BoxColumns boxes;
+  check_prepared(path(), [&](const Ray& ray, const PreparedRay& prepared, std::size_t n) {
+    Answers mine, scalar;
+    const std::uint32_t bits = hits(prepared, boxes.arrays(n), mine.numbers(0, n));
+    intervals(ray, boxes.arrays(n), scalar.bits_of(n), scalar.numbers(0, n), scalar.numbers(1, n),
+              {.test = BoxTest::conservative, .path = &paths().front()});
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_EQ((bits >> i & 1) != 0, scalar.bit(i)) << "prepared, element " << i;
+      if (scalar.bit(i)) EXPECT_EQ(mine.number[0][i], scalar.number[0][i]) << "prepared, element " << i;
+    }
+  });
+  count(2);
   expect_all_counted(kernels_of(path()).boxes);
 }
 
@@ -227,6 +248,13 @@ TEST_P(EveryRow, of_spheres) {
   }
   check_shapes(path(), SphereOptions{}, "line", false, RayColumns(), SphereColumns(), ask_lines, ask);
   count(grade_names.size());
+  const SphereColumns spheres;
+  check_prepared(path(), [&](const Ray& ray, const PreparedRay& prepared, std::size_t n) {
+    const SphereOptions by_scalar{.test = SphereTest::perpendicular, .path = &paths().front()};
+    EXPECT_TRUE(
+        same_bytes(closest_hit(prepared, spheres.arrays(n)), closest_hit(ray, spheres.arrays(n), by_scalar)));
+  });
+  count(2);
   expect_all_counted(kernels_of(path()).spheres);
 }
 
