@@ -20,12 +20,14 @@ using SceneItem = std::conditional_t<is_hit<Item>, SceneHit, SceneCrossing>;
 
 // A hit or a crossing in a tree, as one in the scene.
 template <class Item>
-SceneItem<Item> in_scene(Item item, const TriangleOwner& owner) {
-  item.primitive -= owner.first;
-  if constexpr (is_hit<Item>)
-    return {item.t, item.u, item.v, item.primitive, owner.geometry, owner.instance};
-  else
+SceneItem<Item> in_scene(Item item, const TriangleOwners& owners) {
+  if constexpr (is_hit<Item>) {
+    return owners.spread(item);
+  } else {
+    const TriangleOwner& owner = owners.of(item.primitive);
+    item.primitive -= owner.first;
     return {item, owner.geometry, owner.instance};
+  }
 }
 // The same as an entry of all rays' lists.
 template <class Item>
@@ -57,8 +59,7 @@ RayLists<SceneItem<Item>> lists_in_common(const CommonTree& tree, const RaySourc
   RayLists<Item> found = lists_in_tree<Item>(*tree.geometry->triangles(), numbers, rays, options);
   RayLists<SceneItem<Item>> lists{std::move(found.offsets), {}};
   lists.items.reserve(found.items.size());
-  for (const Item& item : found.items)
-    lists.items.push_back(in_scene(item, numbers.owners.of(item.primitive)));
+  for (const Item& item : found.items) lists.items.push_back(in_scene(item, numbers.owners));
   return lists;
 }
 
@@ -129,8 +130,7 @@ class InstanceLists {
     const RayLists<Item> lists =
         lists_in_tree<Item>(tree, numbers, {.records = RayView(rays), .skip = skip}, options_);
     for (std::size_t k = 0; k < rays.size(); ++k)
-      for (const Item& item : lists[k])
-        found_.push_back({in_scene(item, numbers.owners.of(item.primitive)), picked[k]});
+      for (const Item& item : lists[k]) found_.push_back({in_scene(item, numbers.owners), picked[k]});
   }
 
   const SceneQuery& query_;

@@ -120,13 +120,6 @@ void count(const SceneParts& scene, const RaySource& given, std::span<CrossingCo
   }
 }
 
-RaySource source_of(const RayView& rays, const ListOptions& options) {
-  return {.records = rays, .active = options.active, .skip = options.skip};
-}
-RaySource source_of(const RayArrays& rays, const ListOptions& options) {
-  return {.arrays = &rays, .active = options.active, .skip = options.skip};
-}
-
 }  // namespace
 
 RayLists<SceneHit> Scene::all_hits(RayView rays, const ListOptions& options, std::uint32_t mask) const {
