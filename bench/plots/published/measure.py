@@ -110,7 +110,7 @@ def mesh_files(folder):
 
 
 def runs_of(kind, build, meshes, work):
-    """(arguments, JSON file) of each run of a kind; with the machine's file before those of raylanes_bench."""
+    """(arguments, JSON file) of each run of a kind; before runs of raylanes_bench comes the machine's."""
     command, cases = COMMANDS[kind]
     tool = build / 'bench/raylanes'
     if command.startswith('raylanes_bench'):

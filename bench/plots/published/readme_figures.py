@@ -35,7 +35,7 @@ def longest_over_arrays(kernels):
 
 def figures(folder):
     """The figures of README's sentences, in their words, each with the machines that its sentence must name: times are
-    those of the newest file, ratios run over all machines."""
+    from the newest file, ratios run over all machines."""
     found = {}
 
     def add(kind, words, *values):
