@@ -89,19 +89,38 @@ bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& r
   return is_occluded != 0;
 }
 
-// The same for a call that may skip a triangle: the row, and that triangle in the tree. A row of null: another way.
-struct CallOfOne {
-  const ChosenCallRow* row = nullptr;
-  std::uint32_t skipped = no_primitive;
-
-  CallOfOne(const CommonTree* tree, const TraceOptions& options) {
+// The same for a call with options: what a tree that all its triangles are in answers without a plan, if anything.
+class CallOfOne {
+ public:
+  CallOfOne(const CommonTree* tree, const TraceOptions& options) : tree_(tree), facing_(options.facing) {
     const PrimitiveView& skip = options.skip;
-    if (tree == nullptr || skip.first == nullptr || skip.to_instance == 0 || options.facing != Facing::any)
-      return;
-    row = chosen_row(options);
-    if (row != nullptr) skipped = tree->numbers().of(skip.instance(0), skip[0]);
+    if (tree == nullptr) return;
+    usual_ = usual_row(options);
+    if (usual_ != nullptr || (skip.first != nullptr && skip.to_instance == 0)) return;
+    chosen_ = chosen_row(options);
+    if (chosen_ != nullptr && skip.first != nullptr) skipped_ = tree->numbers().of(skip.instance(0), skip[0]);
   }
+  explicit operator bool() const { return usual_ != nullptr || chosen_ != nullptr; }
+  SceneHit closest(const Ray& ray) const {
+    const Hit hit = usual_ != nullptr ? usual_->closest(*tree_->view, ray)
+                                      : chosen_->closest(*tree_->view, ray, facing_, skipped_);
+    return tree_->numbers().owners.spread(hit);
+  }
+  bool occluded(const Ray& ray) const {
+    return usual_ != nullptr ? usual_->any(*tree_->view, ray)
+                             : chosen_->any(*tree_->view, ray, facing_, skipped_);
+  }
+
+ private:
+  const CommonTree* tree_;
+  Facing facing_;
+  const CallRow* usual_ = nullptr;
+  const ChosenCallRow* chosen_ = nullptr;
+  std::uint32_t skipped_ = no_primitive;
 };
+bool is_usual_and_walked(const SceneParts& scene, const TraceOptions& options) {
+  return options.test == TriangleTest::exact && is_walked(scene) && usual_row(options) != nullptr;
+}
 
 }  // namespace
 
@@ -135,13 +154,10 @@ SceneHit Scene::closest(const Ray& ray) const {
                             : closest_by_options(ray, {}, ~0u);
 }
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
-  const CommonTree* const tree = quick_tree(parts(), mask);
-  if (const CallOfOne call(tree, options); call.row != nullptr)
-    return tree->numbers().owners.spread(call.row->closest(*tree->view, ray, Facing::any, call.skipped));
-  const bool is_usual =
-      options.test == TriangleTest::exact && is_walked(parts()) && usual_row(options) != nullptr;
-  return is_usual ? walked_closest(parts(), checked_path(options.path), ray, mask)
-                  : closest_by_options(ray, options, mask);
+  if (const CallOfOne call(quick_tree(parts(), mask), options); call) return call.closest(ray);
+  return is_usual_and_walked(parts(), options)
+             ? walked_closest(parts(), checked_path(options.path), ray, mask)
+             : closest_by_options(ray, options, mask);
 }
 SceneHit Scene::closest_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
@@ -161,13 +177,10 @@ bool Scene::occluded(const Ray& ray) const {
                             : occluded_by_options(ray, {}, ~0u);
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
-  const CommonTree* const tree = quick_tree(parts(), mask);
-  if (const CallOfOne call(tree, options); call.row != nullptr)
-    return call.row->any(*tree->view, ray, Facing::any, call.skipped);
-  const bool may_be = tree != nullptr || (options.test == TriangleTest::exact && is_walked(parts()));
-  const CallRow* const row = may_be ? usual_row(options) : nullptr;
-  return row != nullptr ? walked_occluded(parts(), checked_path(options.path), *row, ray, mask)
-                        : occluded_by_options(ray, options, mask);
+  if (const CallOfOne call(quick_tree(parts(), mask), options); call) return call.occluded(ray);
+  return is_usual_and_walked(parts(), options)
+             ? walked_occluded(parts(), checked_path(options.path), *usual_row(options), ray, mask)
+             : occluded_by_options(ray, options, mask);
 }
 bool Scene::occluded_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
