@@ -49,7 +49,7 @@ COMMANDS = {
     'parts': ('raylanes trace SCENE --parts N --mode automatic,call --rays primary,shadow,diffuse --size 512x512 '
               '--path avx512,avx2 --against scene,embree --seconds 0.4',
               each(SCENE=['sibenik', 'kitchen', 'office', 'staircase'], N=[100]) +
-              each(SCENE=['sibenik', 'staircase'], N=[350]) + each(SCENE=['kitchen'], N=[500])),
+              each(SCENE=['sibenik', 'kitchen', 'staircase'], N=[1000])),
     'modes': ('raylanes trace SCENE --subdivide K --size SIZE --mode automatic,single,packet,stream,call --rays '
               'primary,shadow,diffuse,random --path avx512,avx2 --seconds 0.25',
               [{**case, **size}
