@@ -68,6 +68,13 @@ struct SegmentsOf {
   }
 };
 
+// Whether kernels can read rays where they lie.
+template <class AnyRay>
+bool lie_plain(const RayRecords<AnyRay>& rays) {
+  return rays.parts == nullptr && rays.stride == sizeof(AnyRay) &&
+         reinterpret_cast<std::uintptr_t>(rays.first) % alignof(AnyRay) == 0;
+}
+
 // Rays as records, or as an array for each number, or between points.
 template <class T>
 struct RaySourceOf {
@@ -101,9 +108,7 @@ struct RaySourceOf {
   }
   // The rays where they lie, if kernels can read them there.
   const Ray* in_place() const {
-    const bool is_plain = arrays == nullptr && segments == nullptr && active == nullptr &&
-                          records.parts == nullptr && records.stride == sizeof(Ray) &&
-                          reinterpret_cast<std::uintptr_t>(records.first) % alignof(Ray) == 0;
+    const bool is_plain = arrays == nullptr && segments == nullptr && active == nullptr && lie_plain(records);
     return is_plain ? static_cast<const Ray*>(records.first) : nullptr;
   }
 };
@@ -147,10 +152,14 @@ void require_after(const char* call, const AfterRecords<Record>& after, std::siz
   if (after.first == nullptr && after.count > 0)
     throw std::invalid_argument(std::string(call) + ": a view of hits to look behind points to nothing");
 }
-// The primitive that the one ray of a call skips.
+// The primitive that a ray of a call skips; the one ray of a call.
+template <class Options>
+std::uint32_t skipped_of(const Options& options, std::size_t i) {
+  return options.skip.first != nullptr ? options.skip[i] : no_primitive;
+}
 template <class Options>
 std::uint32_t skipped_by_one(const Options& options) {
-  return options.skip.first != nullptr ? options.skip[0] : no_primitive;
+  return skipped_of(options, 0);
 }
 template <class Options>
 std::uint32_t skip_of_one(const char* call, const Options& options) {

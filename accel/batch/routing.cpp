@@ -6,6 +6,7 @@
 #include <span>
 
 #include "batch.hpp"
+#include "few_rays.hpp"
 #include "shared_points.hpp"
 
 namespace raylanes {
@@ -89,10 +90,30 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
   if (!coherent || rays.size() < 3) return mode_apart(tree, choice, batch);
   return mode_of_coherent(tree, choice, batch, SharedApex::none, {});
 }
+// Some rays at a time, where they wait for memory and are not few; otherwise the loop of calls with one ray, which has
+// less to do for each.
+void run_singly(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  const bool fly = may_fly(tree, choice) && batch.size >= min_flying_batch;
+  const ChosenCallRow* const chosen = choice.chosen;
+  const CallRow* const call = choice.call;
+  if (fly || (chosen == nullptr && call == nullptr)) return run(tree, *choice.single, batch);
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Ray& ray = batch.rays[i];
+    const std::uint32_t skipped = batch.skip != nullptr ? batch.skip[i] : no_primitive;
+    if (batch.hits != nullptr)
+      batch.hits[i] =
+          chosen != nullptr ? chosen->closest(tree, ray, batch.facing, skipped) : call->closest(tree, ray);
+    else
+      batch.occluded[i] =
+          chosen != nullptr ? chosen->any(tree, ray, batch.facing, skipped) : call->any(tree, ray);
+  }
+}
 void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   batch.shared_point = SharedApex::none;
   // Streams pad boxes of trees far from zero by much.
   if (mode == TraversalMode::stream && tree.max_fused_size == 0.0f) mode = TraversalMode::single;
+  if (mode == TraversalMode::single && choice.mode == TraversalMode::automatic)
+    return run_singly(tree, choice, batch);
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream

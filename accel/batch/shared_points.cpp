@@ -107,9 +107,9 @@ bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box) {
         apart = e - d, way = Point(rays[i].origin) - Point(rays[i - 1].origin);
     const bool together = dot(apart, apart) <= near * near * std::min(dot(d, d), dot(e, e)) &&
                           dot(way, way) <= near * near * dot(diagonal, diagonal);
-    strangers += together ? 0 : 1;
+    if (!together && ++strangers > max_strangers) return false;
   }
-  return strangers <= max_strangers;
+  return true;
 }
 template std::size_t count_of_origin(std::span<const Ray>);
 template std::size_t count_of_origin(std::span<const RayD>);

@@ -11,6 +11,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/checked_call.hpp"
+#include "../batch/few_rays.hpp"
 #include "lists.hpp"
 #include "traced_tree.hpp"
 
@@ -51,6 +52,10 @@ class RowsOfOptions {
                                   " is counted in the mode single alone; exact is in every mode");
   }
   const TraversalRow* single() const { return single_; }
+  const CallRow* call() const {
+    const CallRow& row = modes_->call.row[test_][grade_];
+    return row.closest != nullptr ? &row : nullptr;
+  }
   // Counted rows of tests that round are of single rays.
   const TraversalRow* of(TraversalMode mode) const {
     if (mode == TraversalMode::single) return single_;
@@ -82,6 +87,7 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
                          options.mode,
                          options.hint,
                          options.counters};
+  choice.call = rows.call();
   set_what_tells(choice, options);
   return choice;
 }
@@ -108,15 +114,33 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   return choice;
 }
 
-// Whether a call with one ray sets no more than facing, skip, after, test, grade and path.
+// Whether a call with one ray sets no more than facing, skip, after, test, grade, path, and what is for batches.
 bool is_usual_but_chosen(const TraceOptions& options) {
-  return options.mode == TraversalMode::automatic && options.hint == BatchHint::none &&
-         options.threads == 1 && options.counters == nullptr &&
-         static_cast<std::size_t>(options.grade) < grade_names.size();
+  return options.mode == TraversalMode::automatic &&
+         static_cast<std::size_t>(options.hint) < batch_hint_names.size() && options.threads >= 0 &&
+         options.counters == nullptr && static_cast<std::size_t>(options.grade) < grade_names.size();
 }
 // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
 bool is_quick(const TreeView* ready) {
   return ready != nullptr && !QuietFloats::are_wanted();
+}
+// A batch of few rays, by the rows of calls with one ray. False if the batch is to go another way.
+template <class Answer, class OfUsual, class OfChosen>
+bool trace_few(const TreeView* ready, const RayView& rays, Answer* answers, std::size_t count,
+               const TraceOptions& options, OfUsual usual, OfChosen of_chosen) {
+  if (!is_quick(ready)) return false;
+  const FewRays few(rays, answers, count, options, batch_size_of(*ready));
+  if (!few) return false;
+  if (const CallRow* const row = usual_row(options)) {
+    few.trace([&, call = row->*usual](const Ray& ray, std::size_t) { return call(*ready, ray); });
+    return true;
+  }
+  const ChosenCallRow* const row = chosen_row(options, rays.count);
+  if (row == nullptr) return false;
+  few.trace([&, call = row->*of_chosen](const Ray& ray, std::size_t i) {
+    return call(*ready, ray, options.facing, skipped_of(options, i));
+  });
+  return true;
 }
 void trace_occluded(const TracedTree& tree, const RaySource& rays, std::span<std::uint8_t> occluded,
                     const TraceOptions& options) {
@@ -138,13 +162,13 @@ const CallRow* usual_row(const TraceOptions& options) {
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
-bool is_usual_kept(const TraceOptions& options) {
+bool is_usual_kept(const TraceOptions& options, std::size_t rays) {
   return is_usual_but_chosen(options) && options.test == TriangleTest::exact &&
          static_cast<std::size_t>(options.facing) < facing_names.size() &&
-         options.skip.count == (options.skip.first != nullptr ? 1 : 0);
+         options.skip.count == (options.skip.first != nullptr ? rays : 0);
 }
-const ChosenCallRow* chosen_row(const TraceOptions& options) {
-  return is_usual_kept(options) && options.after.first == nullptr
+const ChosenCallRow* chosen_row(const TraceOptions& options, std::size_t rays) {
+  return is_usual_kept(options, rays) && options.after.first == nullptr
              ? &kernels_of(checked_path(options.path)).queries.plain.chosen_call
              : nullptr;
 }
@@ -244,6 +268,9 @@ bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& optio
 }
 
 void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
+  if (trace_few(ready_, rays, HitSink<Hit>{hits}.in_place(), hits.count, options, &CallRow::closest,
+                &ChosenCallRow::closest))
+    return;
   trace_hits(traced(), source_of(rays, options), hits, options);
 }
 void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
@@ -251,6 +278,8 @@ void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptio
 }
 void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
                             const TraceOptions& options) const {
+  if (trace_few(ready_, rays, occluded.data(), occluded.size(), options, &CallRow::any, &ChosenCallRow::any))
+    return;
   trace_occluded(traced(), source_of(rays, options), occluded, options);
 }
 void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,

@@ -45,10 +45,10 @@ struct Traversal {
 // or the test has no such row.
 const CallRow& default_row();
 const CallRow* usual_row(const TraceOptions& options);
-// The row for a call with one ray that sets facing and skip besides, if at all; null if there is none.
-const ChosenCallRow* chosen_row(const TraceOptions& options);
-// Whether a call with one ray whose caller rejects hits sets no more than facing, skip, after, grade and path.
-bool is_usual_kept(const TraceOptions& options);
+// The row for one ray at a time that sets facing and skip besides, of so many rays, if at all; null if there is none.
+const ChosenCallRow* chosen_row(const TraceOptions& options, std::size_t rays = 1);
+// Whether a call whose caller rejects hits sets no more than facing, skip, after, grade and path.
+bool is_usual_kept(const TraceOptions& options, std::size_t rays = 1);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);

@@ -8,6 +8,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/checked_call.hpp"
+#include "../batch/few_rays.hpp"
 #include "../queries/traced_tree.hpp"
 #include "reach.hpp"
 #include "scene_parts.hpp"
@@ -89,37 +90,61 @@ bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& r
   return is_occluded != 0;
 }
 
-// The same for a call with options: what a tree that all its triangles are in answers without a plan, if anything.
-class CallOfOne {
+// The same for calls with options: what a tree that all its triangles are in answers without a plan, if anything. Of
+// some rays, each with its triangle to skip.
+class CallInTree {
  public:
-  CallOfOne(const CommonTree* tree, const TraceOptions& options) : tree_(tree), facing_(options.facing) {
+  CallInTree(const CommonTree* tree, const TraceOptions& options, std::size_t rays = 1)
+      : tree_(tree), options_(options) {
     const PrimitiveView& skip = options.skip;
     if (tree == nullptr) return;
     usual_ = usual_row(options);
     if (usual_ != nullptr || (skip.first != nullptr && skip.to_instance == 0)) return;
-    chosen_ = chosen_row(options);
-    if (chosen_ != nullptr && skip.first != nullptr) skipped_ = tree->numbers().of(skip.instance(0), skip[0]);
+    chosen_ = chosen_row(options, rays);
   }
   explicit operator bool() const { return usual_ != nullptr || chosen_ != nullptr; }
-  SceneHit closest(const Ray& ray) const {
+  SceneHit closest(const Ray& ray, std::size_t i = 0) const {
     const Hit hit = usual_ != nullptr ? usual_->closest(*tree_->view, ray)
-                                      : chosen_->closest(*tree_->view, ray, facing_, skipped_);
+                                      : chosen_->closest(*tree_->view, ray, options_.facing, skipped(i));
     return tree_->numbers().owners.spread(hit);
   }
-  bool occluded(const Ray& ray) const {
+  bool occluded(const Ray& ray, std::size_t i = 0) const {
     return usual_ != nullptr ? usual_->any(*tree_->view, ray)
-                             : chosen_->any(*tree_->view, ray, facing_, skipped_);
+                             : chosen_->any(*tree_->view, ray, options_.facing, skipped(i));
   }
 
  private:
+  std::uint32_t skipped(std::size_t i) const {
+    const PrimitiveView& skip = options_.skip;
+    return skip.first != nullptr ? tree_->numbers().of(skip.instance(i), skip[i]) : no_primitive;
+  }
+
   const CommonTree* tree_;
-  Facing facing_;
+  const TraceOptions& options_;
   const CallRow* usual_ = nullptr;
   const ChosenCallRow* chosen_ = nullptr;
-  std::uint32_t skipped_ = no_primitive;
 };
 bool is_usual_and_walked(const SceneParts& scene, const TraceOptions& options) {
   return options.test == TriangleTest::exact && is_walked(scene) && usual_row(options) != nullptr;
+}
+
+// A batch of few rays as the loop of calls. False if the batch is to go another way.
+template <class Answer>
+bool trace_few(const SceneParts& scene, const RayView& rays, Answer* answers, std::size_t count,
+               const TraceOptions& options, std::uint32_t mask) {
+  const CommonTree* const tree = quick_tree(scene, mask);
+  if (tree == nullptr && (scene.has_others() || !is_usual_and_walked(scene, options))) return false;
+  const FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
+  const CallInTree call(tree, options, rays.count);
+  if (!few || (tree != nullptr && !call)) return false;
+  const Path& path = checked_path(options.path);
+  few.trace([&](const Ray& ray, std::size_t i) -> Answer {
+    if constexpr (std::is_same_v<Answer, SceneHit>)
+      return call ? call.closest(ray, i) : walked_closest(scene, path, ray, mask);
+    else
+      return call ? call.occluded(ray, i) : walked_occluded(scene, path, *usual_row(options), ray, mask);
+  });
+  return true;
 }
 
 }  // namespace
@@ -154,7 +179,7 @@ SceneHit Scene::closest(const Ray& ray) const {
                             : closest_by_options(ray, {}, ~0u);
 }
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
-  if (const CallOfOne call(quick_tree(parts(), mask), options); call) return call.closest(ray);
+  if (const CallInTree call(quick_tree(parts(), mask), options); call) return call.closest(ray);
   return is_usual_and_walked(parts(), options)
              ? walked_closest(parts(), checked_path(options.path), ray, mask)
              : closest_by_options(ray, options, mask);
@@ -177,7 +202,7 @@ bool Scene::occluded(const Ray& ray) const {
                             : occluded_by_options(ray, {}, ~0u);
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
-  if (const CallOfOne call(quick_tree(parts(), mask), options); call) return call.occluded(ray);
+  if (const CallInTree call(quick_tree(parts(), mask), options); call) return call.occluded(ray);
   return is_usual_and_walked(parts(), options)
              ? walked_occluded(parts(), checked_path(options.path), *usual_row(options), ray, mask)
              : occluded_by_options(ray, options, mask);
@@ -191,6 +216,7 @@ bool Scene::occluded_by_options(const Ray& ray, const TraceOptions& options, std
   return is_occluded != 0;
 }
 void Scene::closest(RayView rays, SceneHitView hits, const TraceOptions& options, std::uint32_t mask) const {
+  if (trace_few(parts(), rays, HitSink<SceneHit>{hits}.in_place(), hits.count, options, mask)) return;
   trace_hits(parts(), {.records = rays, .active = options.active}, hits, options, mask);
 }
 void Scene::closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options,
@@ -199,6 +225,7 @@ void Scene::closest(const RayArrays& rays, SceneHitView hits, const TraceOptions
 }
 void Scene::occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options,
                      std::uint32_t mask) const {
+  if (trace_few(parts(), rays, occluded.data(), occluded.size(), options, mask)) return;
   trace_occluded(parts(), {.records = rays, .active = options.active}, occluded, options, mask);
 }
 void Scene::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const TraceOptions& options,

@@ -16,8 +16,6 @@ namespace {
 // Rays to an instance spread over its part of the picture. Fewer rays than this make packets with wide frusta, so they
 // are traced as streams or single rays. Measured.
 constexpr std::size_t min_packets = 4096;
-// Fewer rays go through the instances of a leaf as single rays, without copies of rays and hits. Measured.
-constexpr std::size_t min_list = 24;
 
 // Spreads the hits of a tree into hits of the scene, from the front. As words: a hit's two, the second of which ends
 // with the primitive, and one that names the geometry and the instance.

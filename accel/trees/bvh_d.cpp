@@ -3,6 +3,7 @@
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../batch/few_rays.hpp"
 #include "../batch/routing.hpp"
 #include "../builders/mesh_references.hpp"
 #include "../doubles/bvh_d_arrays.hpp"
@@ -17,14 +18,27 @@ namespace {
 bool is_quick(const BvhDArrays* tree) {
   return tree != nullptr && !QuietFloats::are_wanted();
 }
-// The same where a call has options, which may name a path, sides, and a primitive to skip.
-bool is_quick(const BvhDArrays* tree, const TraceOptionsD& options) {
-  return options.threads == 1 && static_cast<std::size_t>(options.facing) < facing_names.size() &&
-         options.skip.count == (options.skip.first != nullptr ? 1 : 0) && options.after.first == nullptr &&
+// The same where a call has options, which may name a path, sides, and a primitive to skip for each ray.
+bool is_quick(const BvhDArrays* tree, const TraceOptionsD& options, std::size_t rays = 1) {
+  return options.threads >= 0 && static_cast<std::size_t>(options.facing) < facing_names.size() &&
+         options.skip.count == (options.skip.first != nullptr ? rays : 0) && options.after.first == nullptr &&
          is_quick(tree);
 }
 const DoubleRayKernels& kernels_in_use() {
   return kernels_of(path_in_use()).doubles;
+}
+// A batch of few rays, by the kernel of calls with one ray. False if the batch is to go another way.
+template <class Answer, class OfRay>
+bool trace_few(const BvhDArrays* tree, const RayViewD& rays, Answer* answers, std::size_t count,
+               const TraceOptionsD& options, OfRay of_ray) {
+  if (!is_quick(tree, options, rays.count)) return false;
+  const FewRays few(rays, answers, count, options, batch_size_of(tree->ready.tree));
+  if (!few) return false;
+  few.trace(
+      [&, call = kernels_of(checked_path(options.path)).doubles.*of_ray](const RayD& ray, std::size_t i) {
+        return call(tree->ready, ray, options.facing, skipped_of(options, i));
+      });
+  return true;
 }
 
 // Checks what refit() is given; returns whether the tree must be built again.
@@ -143,12 +157,17 @@ RayCalls<BvhD> BvhD::calls(const TraceOptionsD& options) const& {
 }
 
 void BvhD::closest(RayViewD rays, HitViewD hits, const TraceOptionsD& options) const {
+  if (trace_few(tree_.get(), rays, HitSink<HitD>{hits}.in_place(), hits.count, options,
+                &DoubleRayKernels::closest_of_ray))
+    return;
   trace_hits(view_of(tree_), source_of(rays, options), hits, options);
 }
 void BvhD::closest(const RayArraysD& rays, HitViewD hits, const TraceOptionsD& options) const {
   trace_hits(view_of(tree_), source_of(rays, options), hits, options);
 }
 void BvhD::occluded(RayViewD rays, std::span<std::uint8_t> occluded, const TraceOptionsD& options) const {
+  if (trace_few(tree_.get(), rays, occluded.data(), occluded.size(), options, &DoubleRayKernels::any_of_ray))
+    return;
   trace_occluded(view_of(tree_), source_of(rays, options), occluded, options);
 }
 void BvhD::occluded(const RayArraysD& rays, std::span<std::uint8_t> occluded,

@@ -12,6 +12,12 @@ MUTANTS = [
     *rows_of('accel/batch/checked_call.hpp', 'test_queries',
         ('call: hits to look behind are not copied', 'const bool is_in_place = ',
          'const bool is_in_place = true || '), source='accel/queries/nearest.cpp'),
+    *rows_of('accel/batch/few_rays.hpp', 'test_trees',
+        ('few rays: among their answers', 'are_apart(rays_, size_', 'are_apart(nullptr, size_'),
+        ('few rays: skips are written over', 'if (skip.count != size_ ', 'if (skip.count == size_) return true;\n'
+         '    if (skip.count != size_ '),
+        ('few rays: progress is not told', 'options.progress == nullptr', 'true'),
+        ('few rays: fewer answers', 'count == size_', 'true'), source='accel/queries/nearest.cpp'),
     *rows_of('accel/batch/ray_source.hpp', 'test_bvh',
         ('queries: overlapping hits', 'if (hits.stride < sizeof(Record) && hits.count > 1)',
          'if (false)'), source='accel/queries/nearest.cpp'),
