@@ -90,8 +90,8 @@ bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& r
   return is_occluded != 0;
 }
 
-// The same for calls with options: what a tree that all its triangles are in answers without a plan, if anything. Each of
-// the rays may skip a triangle.
+// The same for calls with options: what a tree that all its triangles are in answers without a plan, if anything. Each
+// of the rays may skip a triangle.
 class CallInTree {
  public:
   CallInTree(const CommonTree* tree, const TraceOptions& options, std::size_t rays = 1)
