@@ -1,8 +1,6 @@
 #include <raylanes/prepared_ray.hpp>
-#include <raylanes/triangles.hpp>
 
 #include "checked.hpp"
-#include "quiet_floats.hpp"
 #include "table/boxes.hpp"
 #include "table/kernel_table.hpp"
 #include "table/spheres.hpp"
@@ -14,13 +12,8 @@ PreparedRay::PreparedRay(const Ray& ray, const Path* path) : ray_(ray) {
   const KernelTable& kernels = kernels_of(checked_path(path));
   boxes_ = kernels.boxes.hits;
   spheres_ = kernels.spheres.closest_among;
-  triangles_ =
-      kernels.triangles
-          .row[static_cast<std::size_t>(TriangleTest::exact)][static_cast<std::size_t>(Grade::reproducible)]
-          .closest_of_triangles;
-  const QuietFloats quiet;
-  kernels.boxes.prepare(ray, among_boxes_);
-  kernels.spheres.prepare(ray, among_spheres_);
+  triangles_ = kernels.triangles.closest_among;
+  kernels.spheres.prepare(ray, among_);
 }
 
 void PreparedRay::refuse(std::size_t primitives) {

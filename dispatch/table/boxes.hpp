@@ -22,8 +22,7 @@ struct BoxRow {
 };
 struct BoxKernels : Rows<BoxRow, std::size(box_tests)> {
   // For PreparedRay, by the test conservative.
-  void (*prepare)(const Ray& ray, detail::RayAmongBoxes& prepared);
-  detail::HitsAmongBoxes hits;
+  detail::HitsAmong hits;
 };
 
 }  // namespace raylanes

@@ -25,9 +25,9 @@ struct SphereKernels : Rows<SphereRow, std::size(sphere_tests)> {
   // For whole lines, [Grade].
   void (*line_of_spheres[grade_names.size()])(const Ray& ray, Soa spheres, std::size_t n, LaneBits active,
                                               std::uint8_t* bits);
-  // For PreparedRay, by the test perpendicular in the grade reproducible.
-  void (*prepare)(const Ray& ray, detail::RayAmongSpheres& prepared);
-  detail::ClosestAmongSpheres closest_among;
+  // For PreparedRay: what kernels of all primitives take of a ray; and the test perpendicular, grade reproducible.
+  void (*prepare)(const Ray& ray, detail::RayAmong& prepared);
+  detail::ClosestAmong closest_among;
 };
 
 }  // namespace raylanes

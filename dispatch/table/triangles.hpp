@@ -4,6 +4,7 @@
 
 #include <iterator>
 
+#include <raylanes/prepared_ray.hpp>
 #include <raylanes/triangles.hpp>
 
 #include "rows.hpp"
@@ -23,6 +24,9 @@ struct TriangleRow {
   void (*closest_of_rays)(const RayArrays& rays, const float* triangle, LaneBits active, std::uint8_t* bits,
                           float* t, float* u, float* v);
 };
-struct TriangleKernels : Rows<TriangleRow, std::size(triangle_tests)> {};
+struct TriangleKernels : Rows<TriangleRow, std::size(triangle_tests)> {
+  // For PreparedRay, by the test exact.
+  detail::ClosestAmong closest_among;
+};
 
 }  // namespace raylanes

@@ -12,22 +12,20 @@ namespace raylanes {
 
 namespace detail {
 
-// The numbers that kernels compute from a ray once. tmin is NaN for a ray that hits nothing. first, last: which of the
-// arrays lo[3], hi[3] has the plane of an axis that the ray meets first, and last.
-struct RayAmongBoxes {
-  float origin[3], inverse[3], far_inverse[3], tmin, tmax;
-  std::uint32_t first[3], last[3];
-};
-struct RayAmongSpheres {
+// The numbers that kernels compute from a ray once; ray.tmin is NaN for a ray that hits nothing.
+struct RayAmong {
   Ray ray;
-  float scale, unit, square, inverse_square;
+  // For boxes: reciprocals, and which of the arrays lo[3], hi[3] has the plane that the ray meets first, and last.
+  float inverse[3], far_inverse[3];
+  std::uint32_t first[3], last[3];
+  float scale, unit, square, inverse_square;  // for spheres
+  float shear[2];                             // for triangles, and their order of axes
+  std::int32_t order[3];
 };
 
-using HitsAmongBoxes = std::uint32_t (*)(const RayAmongBoxes& ray, const BoxArrays& boxes, float* entry);
-using ClosestAmongSpheres = void (*)(const RayAmongSpheres& ray, const float* const* spheres, std::size_t n,
-                                     LaneBits active, Hit& nearest);
-using ClosestAmongTriangles = void (*)(const Ray& ray, const float* const* triangles, std::size_t n,
-                                       LaneBits active, Hit& nearest);
+using HitsAmong = std::uint32_t (*)(const RayAmong& ray, const BoxArrays& boxes, float* entry);
+using ClosestAmong = void (*)(const RayAmong& ray, const float* const* arrays, std::size_t n, LaneBits active,
+                              Hit& nearest);
 
 }  // namespace detail
 
@@ -35,8 +33,8 @@ using ClosestAmongTriangles = void (*)(const Ray& ray, const float* const* trian
 /// Results have the bytes of the calls on arrays with a Ray: intervals() by BoxTest::conservative, closest_hit() by
 /// SphereTest::perpendicular and TriangleTest::exact. A call costs a few nanoseconds, where the calls
 /// with a Ray check their options first.
-/// Arrays need the alignment of a float. Floating-point exceptions are not masked: a call may raise invalid, divide by
-/// zero and overflow.
+/// Arrays need the alignment of a float. Floating-point exceptions are not masked: to prepare a ray and to ask it may
+/// raise invalid, divide by zero and overflow.
 class PreparedRay {
  public:
   /// The most primitives of a call.
@@ -49,41 +47,37 @@ class PreparedRay {
   /// Returns the ray.
   const Ray& ray() const { return ray_; }
   /// Ends the ray at another distance: that of the nearest hit so far. A NaN, or less than tmin, hits nothing.
-  void set_tmax(float tmax) { ray_.tmax = among_spheres_.ray.tmax = among_boxes_.tmax = tmax; }
+  void set_tmax(float tmax) { ray_.tmax = among_.ray.tmax = tmax; }
 
   /// Returns the boxes that the ray hits: box i in bit i.
   /// Throws std::invalid_argument for more than max_primitives boxes.
   friend std::uint32_t hits(const PreparedRay& ray, const BoxArrays& boxes) {
     if (boxes.size > max_primitives) refuse(boxes.size);
-    return ray.boxes_(ray.among_boxes_, boxes, nullptr);
+    return ray.boxes_(ray.among_, boxes, nullptr);
   }
   /// Returns the boxes that the ray hits: box i in bit i.
   /// Writes the t of its entry into box i to entry[i], +infinity for a miss.
   /// Throws std::invalid_argument for more than max_primitives boxes, or if `entry` has not one float for each.
   friend std::uint32_t hits(const PreparedRay& ray, const BoxArrays& boxes, std::span<float> entry) {
     if (boxes.size > max_primitives || entry.size() != boxes.size) refuse(boxes.size, entry.size());
-    return ray.boxes_(ray.among_boxes_, boxes, entry.data());
+    return ray.boxes_(ray.among_, boxes, entry.data());
   }
 
   /// Returns the nearest surface of a sphere that the ray meets; ties in t go to the lowest index.
   /// Throws std::invalid_argument for more than max_primitives spheres.
   friend Hit closest_hit(const PreparedRay& ray, const SphereArrays& spheres) {
     if (spheres.size > max_primitives) refuse(spheres.size);
-    const float* const arrays[] = {spheres.centre[0], spheres.centre[1], spheres.centre[2],
-                                   spheres.squared_radius};
+    static_assert(offsetof(SphereArrays, squared_radius) == sizeof spheres.centre);
     Hit nearest;
-    ray.spheres_(ray.among_spheres_, arrays, spheres.size, nullptr, nearest);
+    ray.spheres_(ray.among_, spheres.centre, spheres.size, nullptr, nearest);
     return nearest;
   }
   /// Returns the nearest hit of a triangle by exact decisions; ties in t go to the lowest index.
   /// Throws std::invalid_argument for more than max_primitives triangles.
   friend Hit closest_hit(const PreparedRay& ray, const TriangleArrays& triangles) {
     if (triangles.size > max_primitives) refuse(triangles.size);
-    const auto& c = triangles.corner;
-    const float* const arrays[] = {c[0][0], c[0][1], c[0][2], c[1][0], c[1][1],
-                                   c[1][2], c[2][0], c[2][1], c[2][2]};
     Hit nearest;
-    ray.triangles_(ray.ray_, arrays, triangles.size, nullptr, nearest);
+    ray.triangles_(ray.among_, triangles.corner[0], triangles.size, nullptr, nearest);
     return nearest;
   }
 
@@ -92,11 +86,9 @@ class PreparedRay {
   [[noreturn]] static void refuse(std::size_t boxes, std::size_t entries);
 
   Ray ray_;
-  detail::RayAmongBoxes among_boxes_;
-  detail::RayAmongSpheres among_spheres_;
-  detail::HitsAmongBoxes boxes_;
-  detail::ClosestAmongSpheres spheres_;
-  detail::ClosestAmongTriangles triangles_;
+  detail::RayAmong among_;
+  detail::HitsAmong boxes_;
+  detail::ClosestAmong spheres_, triangles_;
 };
 // By name, too, where a variable hides it.
 std::uint32_t hits(const PreparedRay& ray, const BoxArrays& boxes);

@@ -96,41 +96,27 @@ template <class Test>
   });
 }
 
-// A ray among few boxes: the bits and entries of intervals_of_boxes() by ConservativeSlabs.
-void prepare(const Ray& ray, detail::RayAmongBoxes& prepared) {
-  Ray any_end = ray;  // the end may change
-  any_end.tmax = std::numeric_limits<float>::infinity();
-  const bool valid = is_valid(any_end);
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const float inverse = 1.0f / ray.direction[axis];
-    prepared.origin[axis] = ray.origin[axis];
-    prepared.inverse[axis] = inverse;
-    prepared.far_inverse[axis] = inverse * conservative_far_factor;
-    const std::uint32_t is_negative = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
-    prepared.first[axis] = axis + 3 * is_negative;
-    prepared.last[axis] = axis + 3 * (1 - is_negative);
-  }
-  prepared.tmin = valid ? ray.tmin : std::numeric_limits<float>::quiet_NaN();
-  prepared.tmax = ray.tmax;
-}
-
-// Boxes from the first on: N of them, or as many as `count` says.
+// The bits and entries of intervals_of_boxes() by ConservativeSlabs. Boxes from the first on: N of them, or as many as
+// `count` says.
 template <int N, bool is_whole>
-inline std::uint32_t hits_from(const detail::RayAmongBoxes& ray, Soa arrays, std::size_t first,
-                               std::size_t count, float* entry) {
+inline std::uint32_t hits_from(const detail::RayAmong& ray, Soa arrays, std::size_t first, std::size_t count,
+                               float* entry) {
   using V = Floats<N>;
   const auto load = [&](std::uint32_t k) {
     if constexpr (is_whole) return V::load(arrays[k] + first);
     return V::load(arrays[k] + first, count, V(std::numeric_limits<float>::quiet_NaN()));
   };
-  V tmin(ray.tmin), tmax(ray.tmax), infinity(std::numeric_limits<float>::infinity());
-  FloatMask<N> is_box = load(0) <= load(3);
-  is_box = is_box & (load(1) <= load(4)) & (load(2) <= load(5));
-  for (int axis = 0; axis < 3; ++axis) {
-    V origin(ray.origin[axis]);
-    tmin = max((load(ray.first[axis]) - origin) * V(ray.inverse[axis]), tmin);
-    tmax = min((load(ray.last[axis]) - origin) * V(ray.far_inverse[axis]), tmax);
-  }
+  V tmin(ray.ray.tmin), tmax(ray.ray.tmax), infinity(std::numeric_limits<float>::infinity());
+  const auto clip = [&](std::size_t axis) {
+    V origin(ray.ray.origin[axis]), inverse(ray.inverse[axis]);
+    V in = load(ray.first[axis]), out = load(ray.last[axis]);
+    tmin = max((in - origin) * inverse, tmin);
+    tmax = min((out - origin) * V(ray.far_inverse[axis]), tmax);
+    return flip(in, sign_of(inverse)) <= flip(out, sign_of(inverse));  // lo <= hi
+  };
+  FloatMask<N> is_box = clip(0);
+  is_box = is_box & clip(1);
+  is_box = is_box & clip(2);
   FloatMask<N> hit = (tmin <= tmax) & is_box;
   if (entry != nullptr) {
     V entered = select(hit, tmin, infinity);
@@ -142,18 +128,24 @@ inline std::uint32_t hits_from(const detail::RayAmongBoxes& ray, Soa arrays, std
   return bits(hit) << first;
 }
 
-[[gnu::flatten]] std::uint32_t hits_among_boxes(const detail::RayAmongBoxes& ray, const BoxArrays& boxes,
-                                                float* entry) {
-  static_assert(offsetof(BoxArrays, hi) == sizeof boxes.lo);
+[[gnu::flatten, gnu::noinline]] std::uint32_t hits_among_any(const detail::RayAmong& ray, Soa arrays,
+                                                             std::size_t n, float* entry) {
   constexpr int most = W < 8 ? W : 8, few = W < 4 ? W : 4;
-  Soa arrays = reinterpret_cast<Soa>(&boxes);
-  const std::size_t n = boxes.size;
   std::size_t i = 0;
   std::uint32_t hits = 0;
   for (; n - i >= most; i += most) hits |= hits_from<most, true>(ray, arrays, i, most, entry);
   if (most > few && n - i >= few) hits |= hits_from<few, true>(ray, arrays, i, few, entry), i += few;
   if (i < n) hits |= hits_from<few, false>(ray, arrays, i, n - i, entry);
   return hits;
+}
+// A whole node needs no loop, and no registers of the caller's.
+[[gnu::flatten]] std::uint32_t hits_among_boxes(const detail::RayAmong& ray, const BoxArrays& boxes,
+                                                float* entry) {
+  static_assert(offsetof(BoxArrays, hi) == sizeof boxes.lo);
+  Soa arrays = reinterpret_cast<Soa>(&boxes);
+  if constexpr (W >= 8)
+    if (boxes.size == 8) return hits_from<8, true>(ray, arrays, 0, 8, entry);
+  return hits_among_any(ray, arrays, boxes.size, entry);
 }
 
 // One box under rays.
@@ -207,7 +199,7 @@ struct MakeRow {
 };
 
 constexpr BoxKernels all_kernels(BoxKernels rows) {
-  rows.prepare = prepare, rows.hits = hits_among_boxes;
+  rows.hits = hits_among_boxes;
   return rows;
 }
 

@@ -77,6 +77,25 @@ template <class Triangles, class AnyRay>
 inline auto exact_hit(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle) {
   return exact_hit(triangles, ray, leaf_triangle, along_axes(triangles, ray, leaf_triangle));
 }
+// The numbers of a triangle that is hit, mostly in doubles.
+#if defined(__AVX2__) && defined(__FMA__)
+template <class Triangles, class Sizes>
+[[gnu::always_inline]] inline Hit known_hit(const Triangles& triangles, const Ray& ray, const Sizes& sizes,
+                                            std::uint32_t leaf_triangle) {
+  const HitNumbers numbers(triangles, ray, sizes, leaf_triangle);
+  if (!numbers.are_clear()) [[unlikely]]
+    return exact_hit(triangles, ray, leaf_triangle);
+  return numbers.hit(triangles.primitive(leaf_triangle));
+}
+#endif
+template <class Triangles>
+inline Hit known_hit(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
+#if defined(__AVX2__) && defined(__FMA__)
+  const RaySizes sizes(triangles, ray, leaf_triangle);
+  if (sizes.are_safe()) return known_hit(triangles, ray, sizes, leaf_triangle);
+#endif
+  return exact_hit(triangles, ray, leaf_triangle);
+}
 // A hit of which only t and the primitive matter: near edges only integers know u and v.
 template <class Triangles, class AnyRay>
 inline auto hit_to_compare(const Triangles& triangles, const AnyRay& ray, std::uint32_t leaf_triangle,

@@ -30,8 +30,13 @@ struct Exact : OfCorners {
   static Ray<V, Axes> prepare(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes,
                               V reach = V(std::numeric_limits<float>::infinity())) {
     const Vec3<V> d = axes.template permute<false>(direction);
-    const Shear<V> shear = shear_of(d);
-    return {origin, d, shear.x, shear.y, EdgeBounds<V>::bound_within(reach), axes};
+    return of_shear(origin, d, shear_of(d), axes, reach);
+  }
+  // Takes the direction in the order of the axes, and its shear.
+  template <class V, class Axes>
+  static Ray<V, Axes> of_shear(const Vec3<V>& origin, const Vec3<V>& direction, const Shear<V>& shear,
+                               const Axes& axes, V reach = V(std::numeric_limits<float>::infinity())) {
+    return {origin, direction, shear.x, shear.y, EdgeBounds<V>::bound_within(reach), axes};
   }
 
   // Takes slopes x/z and y/z up the major axis, which has the sign and size of the direction.

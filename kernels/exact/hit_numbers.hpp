@@ -11,21 +11,24 @@ namespace {
 
 // At least the distance along an axis from the origin to a triangle's first corner; the direction's largest component.
 struct RaySizes {
-  float reach = 0, largest = 0;
+  float reach, largest;
 
   template <class Triangles>
   RaySizes(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float away =
-          __builtin_fabsf(triangles.number(static_cast<int>(axis), leaf_triangle) - ray.origin[axis]);
-      reach = away > reach ? away : reach;
-      largest =
-          __builtin_fabsf(ray.direction[axis]) > largest ? __builtin_fabsf(ray.direction[axis]) : largest;
-    }
+    const auto* const numbers = reinterpret_cast<const float*>(&ray);
+    const auto number = [&](int axis) { return triangles.number(axis, leaf_triangle); };
+    reach = largest_of(four_floats(number(0), number(1), number(2), 0.0f) - Floats<4>::load(numbers));
     reach *= 1 + 0x1p-20f;
+    largest = largest_of(Floats<4>::load(numbers + 4));
   }
   // Whether no component that matters is flushed.
   bool are_safe() const { return largest >= 0x1p-60f; }
+
+ private:
+  static float largest_of(Floats<4> x) {
+    x = abs(x);
+    return first_lane(max(max(x, permute<1, 2, 0, 3>(x)), permute<2, 0, 1, 3>(x)));
+  }
 };
 
 // t, u and v of a hit from one triangle's vectors side by side, where doubles make them clear; docs/exact.md, part 6,

@@ -31,7 +31,7 @@ struct KnownFusedHits {
   const FusedRay& nodes;
 
   Hit operator()(const TreeTriangles&, const Ray& ray, std::uint32_t leaf_triangle) const {
-    return known_hit(tree, ray, nodes, leaf_triangle);
+    return known_hit(TreeTriangles(tree), ray, nodes, leaf_triangle);
   }
 };
 // Rays with unusual numbers, and those that come to many triangles beside them, from the root.

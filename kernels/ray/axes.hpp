@@ -14,9 +14,9 @@ struct ShearAxes {
   int x, y, z;
 };
 
+inline constexpr ShearAxes axes_of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
 constexpr ShearAxes shear_axes(int z, bool is_negative) {
-  constexpr ShearAxes of_positive[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
-  const ShearAxes axes = of_positive[z];
+  const ShearAxes axes = axes_of_positive[z];
   return is_negative ? ShearAxes{axes.y, axes.x, z} : axes;
 }
 inline ShearAxes shear_axes(const Float3& direction) {

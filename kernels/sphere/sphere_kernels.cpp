@@ -8,6 +8,7 @@
 #include "../simd/table_rows.hpp"
 #include "line.hpp"
 #include "perpendicular.hpp"
+#include "prepared_ray.hpp"
 #include "textbook.hpp"
 
 namespace raylanes {
@@ -16,14 +17,14 @@ namespace {
 // --- 1 ray × N spheres
 
 // The ray and its own scale, computed in one lane; what is not valid hits nothing.
-inline detail::RayAmongSpheres in_scale(const Ray& ray) {
-  Floats<1> direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
-  DirectionScale<Floats<1>> s = scale_of(direction);
-  detail::RayAmongSpheres prepared{ray, s.scale.raw, s.unit.raw, s.square.raw, s.inverse_square.raw};
+inline detail::RayAmong in_scale(const Ray& ray) {
+  detail::RayAmong prepared;
+  prepared.ray = ray;
   if (!is_valid(ray)) prepared.ray.tmin = prepared.ray.tmax = std::numeric_limits<float>::quiet_NaN();
+  prepare_for_spheres(ray.direction, prepared);
   return prepared;
 }
-inline ScaledRay scaled(const detail::RayAmongSpheres& prepared) {
+inline ScaledRay scaled(const detail::RayAmong& prepared) {
   const Ray& ray = prepared.ray;
   Floats<W> o[3], d[3];
   broadcast(ray.origin.data(), o);
@@ -85,7 +86,7 @@ template <class Test>
 
 // The first of the two distances that lies in the segment, of those spheres that the segment meets at all.
 template <class Test>
-[[gnu::flatten, gnu::noinline]] void closest_among_spheres(const detail::RayAmongSpheres& ray, Soa spheres,
+[[gnu::flatten, gnu::noinline]] void closest_among_spheres(const detail::RayAmong& ray, Soa spheres,
                                                            std::size_t n, LaneBits active, Hit& nearest) {
   ScaledRay prepared = scaled(ray);
   SphereSoa soa(spheres);
@@ -217,12 +218,7 @@ constexpr SphereKernels all_kernels() {
   all.line_of_spheres[static_cast<std::size_t>(Grade::reproducible)] = line_of_spheres<Grade::reproducible>;
   all.line_of_spheres[static_cast<std::size_t>(Grade::fast)] =
       line_of_spheres < has_fma ? Grade::fast : Grade::reproducible > ;
-  all.prepare = [](const Ray& ray, detail::RayAmongSpheres& prepared) {
-    Ray any_end = ray;  // the end may change
-    any_end.tmax = std::numeric_limits<float>::infinity();
-    prepared = in_scale(any_end);
-    prepared.ray.tmax = ray.tmax;
-  };
+  all.prepare = prepare;
   all.closest_among = closest_among_spheres<PerpendicularSphere<Grade::reproducible>>;
   return all;
 }

@@ -7,6 +7,7 @@
 #include "../ray/nearest.hpp"
 #include "../ray/ray_columns.hpp"
 #include "all_tests.hpp"
+#include "prepared_shear.hpp"
 
 namespace raylanes {
 namespace {
@@ -46,6 +47,10 @@ class RayOverTriangles {
  public:
   RayOverTriangles(const Ray& ray, Soa triangles)
       : RayOverTriangles(ray, triangles, AxesOfRay<Test>(ray.direction)) {}
+  // For the exact test.
+  RayOverTriangles(const detail::RayAmong& among, Soa triangles)
+      : RayOverTriangles(among, triangles,
+                         SharedAxes(ShearAxes{among.order[0], among.order[1], among.order[2]})) {}
   template <class Slice, class Range>
   auto test(const Slice& slice, const Range& range) const {
     return test_lanes<Test>(
@@ -62,7 +67,16 @@ class RayOverTriangles {
   using Axes = AxesOfRay<Test>;
   RayOverTriangles(const Ray& ray, Soa triangles, const Axes& axes)
       : ray_(Test::prepare(in_order(ray.origin, axes), in_order(ray.direction, axes), axes)) {
-    for (int k = 0; k < Test::floats; ++k) number_[k] = triangles[axes.index(k)];
+    take_numbers(triangles, axes);
+  }
+  RayOverTriangles(const detail::RayAmong& among, Soa triangles, const Axes& axes)
+      : ray_(Test::of_shear(in_order(among.ray.origin, axes), in_order(among.ray.direction, axes),
+                            {F(among.shear[0]), F(among.shear[1])}, axes)) {
+    take_numbers(triangles, axes);
+  }
+  void take_numbers(Soa triangles, const Axes& axes) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = axis; k < Test::floats; k += 3) number_[k] = triangles[k - axis + axes.order[axis]];
   }
   static Vec3<F> in_order(const Float3& v, const Axes& axes) {
     return {F(v[axes.order[0]]), F(v[axes.order[1]]), F(v[axes.order[2]])};
@@ -107,8 +121,11 @@ struct ArrayTriangles {
   static std::uint32_t primitive(std::uint32_t leaf_triangle) { return leaf_triangle; }
 };
 template <class Test>
-[[gnu::flatten]] Hit nearest_filtered(const Ray& ray, Soa corners, std::size_t n, LaneBits active) {
-  RayOverTriangles<Test> over(ray, corners);
+[[gnu::flatten, gnu::noinline]] void closest_among_triangles(const detail::RayAmong& among, Soa corners,
+                                                             std::size_t n, LaneBits active, Hit& hit) {
+  const Ray& ray = among.ray;
+  if (!(ray.tmin <= ray.tmax)) return;
+  RayOverTriangles<Test> over(among, corners);
   const ArrayTriangles triangles{corners};
   F tmin(finite_tmin(ray.tmin));
   Candidate nearest(ray);
@@ -117,17 +134,21 @@ template <class Test>
     if ((filtered.certain | filtered.undecided) == 0) return;
     keep_nearest(triangles, ray, filtered, static_cast<std::uint32_t>(slice.i), nearest);
   });
-  return nearest.leaf_triangle == no_leaf_triangle ? Hit() : exact_hit(triangles, ray, nearest.leaf_triangle);
+  if (nearest.leaf_triangle != no_leaf_triangle) hit = known_hit(triangles, ray, nearest.leaf_triangle);
 }
 
 template <class Test>
 void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
-  if constexpr (is_filtered<Test>)
-    nearest = nearest_filtered<Test>(ray, triangles, n, active);
-  else
+  if constexpr (is_filtered<Test>) {
+    detail::RayAmong prepared;
+    prepared.ray = ray;
+    prepare_for_triangles(ray.direction, prepared);
+    closest_among_triangles<Test>(prepared, triangles, n, active, nearest);
+  } else {
     nearest = nearest_of_triangles<Test>(ray, triangles, n, active);
+  }
 }
 
 // --- N rays × one triangle
@@ -192,7 +213,13 @@ struct MakeRow {
 };
 static_assert(is_complete(TriangleTests{}, triangle_tests));
 
+constexpr TriangleKernels all_kernels(TriangleKernels rows) {
+  rows.closest_among = closest_among_triangles<Exact<Grade::reproducible>>;
+  return rows;
+}
+
 }  // namespace
 
-RAYLANES_UNIT_TABLE(TriangleKernels, triangles, rows_of<TriangleKernels>(TriangleTests{}, MakeRow()))
+RAYLANES_UNIT_TABLE(TriangleKernels, triangles,
+                    all_kernels(rows_of<TriangleKernels>(TriangleTests{}, MakeRow())))
 }  // namespace raylanes

@@ -166,6 +166,23 @@ void check_shapes(const Path& path, const Options& options, const std::string& n
   }
 }
 
+// ask(ray, prepared ray, n) for as many primitives as prepared rays take.
+template <class Ask>
+void check_prepared(const Path& path, const Ask& ask) {
+  for (const Ray& ray : RayColumns().elements)
+    for (const std::size_t n : sizes)
+      if (n <= PreparedRay::max_primitives) ask(ray, PreparedRay(ray, &path), n);
+}
+
+template <class Columns, class Options>
+void check_prepared_closest(const Path& path, const Columns& columns, Options by_scalar) {
+  by_scalar.path = &paths().front();
+  check_prepared(path, [&](const Ray& ray, const PreparedRay& prepared, std::size_t n) {
+    const auto arrays = columns.arrays(n);
+    EXPECT_TRUE(same_bytes(closest_hit(prepared, arrays), closest_hit(ray, arrays, by_scalar)));
+  });
+}
+
 // By the public calls: each is one row, which they do not ask for null.
 TEST_P(EveryRow, of_triangles) {
   const TriangleColumns triangles;
@@ -188,6 +205,8 @@ TEST_P(EveryRow, of_triangles) {
         });
     count(5 * grade_names.size());
   }
+  check_prepared_closest(path(), triangles, TriangleOptions{.test = TriangleTest::exact});
+  count(1);
   expect_all_counted(kernels_of(path()).triangles);
 }
 
@@ -200,14 +219,6 @@ auto ask_with(const Query& query) {
     hit_mask(rays, primitives, yes_or_no.bits_of(n), options);
     EXPECT_EQ(yes_or_no.bits, a.bits);
   };
-}
-
-// ask(ray, prepared ray, n) for as many primitives as prepared rays take: two rows, that which prepares and the call.
-template <class Ask>
-void check_prepared(const Path& path, const Ask& ask) {
-  for (const Ray& ray : RayColumns().elements)
-    for (const std::size_t n : sizes)
-      if (n <= PreparedRay::max_primitives) ask(ray, PreparedRay(ray, &path), n);
 }
 
 TEST_P(EveryRow, of_boxes) {
@@ -229,7 +240,7 @@ TEST_P(EveryRow, of_boxes) {
       EXPECT_EQ(mine.number[0][i], expected) << "prepared, element " << i;
     }
   });
-  count(2);
+  count(1);
   expect_all_counted(kernels_of(path()).boxes);
 }
 
@@ -249,13 +260,8 @@ TEST_P(EveryRow, of_spheres) {
   }
   check_shapes(path(), SphereOptions{}, "line", false, RayColumns(), SphereColumns(), ask_lines, ask);
   count(grade_names.size());
-  const SphereColumns spheres;
-  check_prepared(path(), [&](const Ray& ray, const PreparedRay& prepared, std::size_t n) {
-    const SphereOptions by_scalar{.test = SphereTest::perpendicular, .path = &paths().front()};
-    EXPECT_TRUE(
-        same_bytes(closest_hit(prepared, spheres.arrays(n)), closest_hit(ray, spheres.arrays(n), by_scalar)));
-  });
-  count(2);
+  check_prepared_closest(path(), SphereColumns(), SphereOptions{.test = SphereTest::perpendicular});
+  count(2);  // that which prepares, too
   expect_all_counted(kernels_of(path()).spheres);
 }
 

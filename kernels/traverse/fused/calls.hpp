@@ -39,15 +39,6 @@ template <class Test, class Sides = BothSides>
   return hit;
 }
 #if defined(__AVX2__) && defined(__FMA__)
-// The numbers of a triangle that is hit.
-[[gnu::always_inline]] inline Hit known_hit(const TreeView& tree, const Ray& ray, const FusedRay& nodes,
-                                            std::uint32_t leaf_triangle) {
-  const TreeTriangles triangles(tree);
-  const HitNumbers numbers(triangles, ray, nodes, leaf_triangle);
-  if (!numbers.are_clear()) [[unlikely]]
-    return exact_hit(triangles, ray, leaf_triangle);
-  return numbers.hit(triangles.primitive(leaf_triangle));
-}
 template <class Test, class As, class Sides = BothSides>
 [[gnu::always_inline]] inline auto closest_as(const TreeView& tree, const Ray& ray, const As& as,
                                               [[maybe_unused]] Sides sides = {}) {
@@ -60,7 +51,7 @@ template <class Test, class As, class Sides = BothSides>
     const bool has_ended = walk_fused(tree, nodes, FusedLeaves<Test>(tree, ray, nodes), query);
     walk_rest<Test>(tree, ray, query, has_ended);
     if (query.leaf_triangle == no_leaf_triangle) return as(Hit());
-    return as(known_hit(tree, ray, nodes, query.leaf_triangle));
+    return as(known_hit(TreeTriangles(tree), ray, nodes, query.leaf_triangle));
   } else {
     Closest query(ray);
     walk_usual<Test>(tree, ray, query);

@@ -1,6 +1,6 @@
-// Every triangle, box and sphere test over arrays on any path against the scalar one: the same bits in the
-// reproducible grade (without FTZ and DAZ: with them the tests promise no bits); nothing is read or written
-// outside the arrays, nor where the mask leaves an element out.
+// Every triangle, box and sphere test over arrays, and prepared rays, on any path against the scalar one: the
+// same bits in the reproducible grade (without FTZ and DAZ: with them the tests promise no bits); nothing is
+// read or written outside the arrays, nor where the mask leaves an element out.
 #include <bit>
 #include <deque>
 #include <functional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <raylanes/boxes.hpp>
+#include <raylanes/prepared_ray.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
 
@@ -236,12 +237,37 @@ Query sphere_query(Setting& s) {
                         &SphereRow::distances_of_rays);
 }
 
+// Few primitives and no mask.
+Query prepared_query(Setting& s) {
+  const std::size_t n = s.n %= PreparedRay::max_primitives + 1, kind = s.bytes.below(3);
+  s.active = nullptr, s.grade = 0;
+  const Ray ray = any_ray(s.bytes, s.coordinates);
+  const float end = s.bytes.chance(128) ? ray.tmax : s.coordinates();
+  const auto c = soa(s.coordinates, 9, n);
+  return {"prepared ray", [=](const Path& p, Answer& a) {
+            PreparedRay prepared(ray, &p);
+            prepared.set_tmax(end);
+            if (kind == 0) {
+              const std::uint32_t bits = hits(prepared, BoxArrays{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, n},
+                                              std::span(a.numbers[0], n));
+              std::memcpy(a.bits, &bits, (n + 7) / 8);
+            } else if (kind == 1) {
+              a.nearest = closest_hit(prepared, SphereArrays{{c[0], c[1], c[2]}, c[3], n});
+            } else {
+              a.nearest = closest_hit(
+                  prepared, TriangleArrays{{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}}, n});
+            }
+          }};
+}
+
 Query any_query(Setting& s, const Path& path) {
-  switch (s.bytes.below(3)) {
+  switch (s.bytes.below(4)) {
     case 0:
       return box_query(s);
     case 1:
       return sphere_query(s);
+    case 2:
+      return prepared_query(s);
     default:
       return triangle_query(s, path);
   }

@@ -1,6 +1,8 @@
-// Every root on any path against the scalar one: same bits in the reproducible methods, and nothing is read
-// or written outside the arrays.
+// Every root on any path against the scalar one, and calls that take short arrays inline: same bits in the
+// reproducible methods, and nothing is read or written outside the arrays.
 #include <string>
+
+#include <raylanes/roots.hpp>
 
 #include "../../../dispatch/hardest_roots.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
@@ -55,6 +57,22 @@ void run_one_of(Bytes& bytes, const Path& path, RootRows<T, Method, count> RootK
   run<T>(bytes, {methods[i].promise, row, (kernels_of(paths().front()).roots.*function).by[i]}, path);
 }
 
+// Calls take few numbers inline; correctly rounded they are as the instruction has them.
+template <class T, class Method>
+void run_call(Bytes& bytes, const Path& path, ArrayFunction<T> call, const ArrayFunction<T>* of_scalar,
+              Method instruction) {
+  const RootPromise& promise = sqrt_methods[static_cast<std::size_t>(SqrtMethod::hardware)].promise;
+  run<T>(bytes, {promise, call, of_scalar[static_cast<std::size_t>(instruction)]}, path);
+}
+template <class T>
+void take_roots(const T* x, T* y, std::size_t n) {
+  sqrt(std::span(x, n), std::span(y, n));
+}
+template <class T>
+void take_reciprocals(const T* x, T* y, std::size_t n) {
+  reciprocal(std::span(x, n), std::span(y, n));
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -63,13 +81,20 @@ int fuzz_roots(const std::uint8_t* data, std::size_t size) {
   using namespace raylanes::testing;
   Bytes bytes(data, size);
   const Path& path = *bytes.pick(fuzzed_paths());
-  const std::size_t kind = bytes.below(6);
+  const std::size_t kind = bytes.below(10);
+  const RootKernels& scalar = kernels_of(paths().front()).roots;
   const auto run_one = [&](auto... root) { run_one_of(bytes, path, root...); };
   kind == 0   ? run_one(&RootKernels::sqrt, sqrt_methods)
   : kind == 1 ? run_one(&RootKernels::rsqrt, rsqrt_methods)
   : kind == 2 ? run_one(&RootKernels::reciprocal, reciprocal_methods)
   : kind == 3 ? run_one(&RootKernels::double_sqrt, double_sqrt_methods)
   : kind == 4 ? run_one(&RootKernels::double_rsqrt, double_rsqrt_methods)
-              : run_one(&RootKernels::double_reciprocal, double_reciprocal_methods);
+  : kind == 5 ? run_one(&RootKernels::double_reciprocal, double_reciprocal_methods)
+  : kind == 6 ? run_call(bytes, path, take_roots<float>, scalar.sqrt.by, SqrtMethod::hardware)
+  : kind == 7 ? run_call(bytes, path, take_roots<double>, scalar.double_sqrt.by, DoubleSqrtMethod::hardware)
+  : kind == 8
+      ? run_call(bytes, path, take_reciprocals<float>, scalar.reciprocal.by, ReciprocalMethod::hardware)
+      : run_call(bytes, path, take_reciprocals<double>, scalar.double_reciprocal.by,
+                 DoubleReciprocalMethod::hardware);
   return 0;
 }
