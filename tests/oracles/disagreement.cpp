@@ -6,10 +6,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "float_triangle_tests.hpp"
+#include "../support/random_input.hpp"
+#include "../traverse/reference/reference_tracer.hpp"
 
 namespace raylanes::oracle {
 namespace {
+
+using namespace testing;
 
 constexpr Hit miss = {infinity, 0, 0, no_primitive};
 
@@ -32,19 +35,22 @@ TEST(Disagreement, is_about_hits_and_t_only) {
   EXPECT_FALSE(disagree({0, 0, 0, 0}, {0, 0, 0, 1}));
 }
 
+// The ray of TriangleRegressions that passes between two triangles by Möller and Trumbore's test.
 TEST(Disagreement, rounding_of_an_edge_is_an_excuse) {
-  const SharedEdge& c = moller_trumbore_leak;
-  std::vector<Float3> corners;
-  for (const Triangle& tri : {c.first, c.second})
-    for (const auto& v : tri.corner) corners.push_back({v[0], v[1], v[2]});
-  const std::vector<Index3> pair = {{0, 1, 2}, {3, 4, 5}};
-  const std::uint32_t prim = float_sheared(c.ray, c.first).hit ? 0 : 1;
-  const FloatTest hit = float_sheared(c.ray, prim == 0 ? c.first : c.second);
-  const Explanation why =
-      explain(c.ray, corners, pair, {hit.t, hit.u, hit.v, prim}, Form::sheared, miss, Form::moller_trumbore);
+  const Ray ray = make_ray({0, 0, 0}, {-0x1.2569cp-1f, 0x1.99509ep-2f, 0x1.b64bcap+0f});
+  const std::vector<Float3> corners{{-0x1.9769dcp-1f, 0x1.70ab2cp-1f, 0x1.93d2d4p+0f},
+                                    {0x1.3e1aap-4f, -0x1.12ade8p-1f, 0x1.0d85bep+1f},
+                                    {0x1.dee458p-1f, 0x1.5e3d58p-1f, 0x1.8e7fdp+0f},
+                                    {-0x1.80d8b6p-1f, -0x1.10c542p-1f, 0x1.8ef12ap+0f}};
+  const std::vector<Index3> pair{{0, 1, 2}, {1, 0, 3}};
+  const Hit hit = brute_force(corners, pair, {&ray, 1})[0];
+  ASSERT_TRUE(hit);
+  const auto explained = [&](float t) {
+    return explain(ray, corners, pair, {t, hit.u, hit.v, hit.primitive}, Form::sheared, miss,
+                   Form::moller_trumbore);
+  };
+  const Explanation why = explained(hit.t), late = explained(hit.t * 1.01f);
   EXPECT_EQ(why.excuse, Excuse::edge_rounding) << why.sentence;
-  const Explanation late = explain(c.ray, corners, pair, {hit.t * 1.01f, hit.u, hit.v, prim}, Form::sheared,
-                                   miss, Form::moller_trumbore);
   EXPECT_EQ(late.excuse, Excuse::ours_wrong) << late.sentence;
 }
 
