@@ -46,29 +46,4 @@ inline double margin_of(const Ray& ray, const Triangle& triangle) {
   return unless_near(margin, {u, v, 1 - u - v, t - double{ray.tmin}, t - double{ray.tmax}});
 }
 
-// The margin of entry and exit: bounds are padded by 8 roundings and more, ends of intervals by 12.
-inline double margin_of(const Ray& ray, const Box& box) {
-  double entry = double{ray.tmin}, exit = double{ray.tmax}, margin = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double o = double{ray.origin[axis]}, d = double{ray.direction[axis]}, lo = double{box.lo[axis]},
-                 hi = double{box.hi[axis]};
-    entry = std::max(entry, std::min((lo - o) / d, (hi - o) / d));
-    exit = std::min(exit, std::max((lo - o) / d, (hi - o) / d));
-    margin = std::max(margin, 4 * roundings * (std::abs(lo) + std::abs(hi) + std::abs(o)) / std::abs(d));
-  }
-  return unless_near(margin, {exit - entry});
-}
-
-// The margin of the distances, whose root is at least an eighth of the radius.
-inline double margin_of(const Ray& ray, const Sphere& sphere) {
-  const Double3 to = difference(sphere.centre, ray.origin), d = difference(ray.direction, {});
-  const double r = double{sphere.radius}, far = std::sqrt(dot(to, to)) + r, middle = dot(to, d) / dot(d, d),
-               room = r * r - (dot(to, to) - middle * dot(to, d));
-  if (!(std::abs(room) > r * r / 64)) return doubtful;
-  const double length = std::sqrt(dot(d, d)), half = std::sqrt(std::max(room, 0.0)) / length;
-  return unless_near(8 * roundings * far * far / (r * length),
-                     {middle - half - double{ray.tmin}, middle - half - double{ray.tmax},
-                      middle + half - double{ray.tmin}, middle + half - double{ray.tmax}});
-}
-
 }  // namespace raylanes::testing

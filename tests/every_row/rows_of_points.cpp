@@ -1,6 +1,4 @@
 // The rows of closest points: the bytes of scalar, of points alone and of points that go together.
-#include <raylanes/points.hpp>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "../support/same_bytes.hpp"
@@ -49,34 +47,7 @@ void compare_single_points(EveryRow& every, const PointKernels& mine, const Poin
     }
 }
 
-struct Distances {
-  std::vector<float> number[6] = {std::vector<float>(most, untouched), std::vector<float>(most, untouched),
-                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched),
-                                  std::vector<float>(most, untouched), std::vector<float>(most, untouched)};
-  PointDistances of(std::size_t n) {
-    const auto span = [&](std::size_t k) { return std::span(number[k]).first(n); };
-    return {span(0), {span(1), span(2), span(3)}, span(4), span(5)};
-  }
-};
-
 TEST_P(EveryRow, of_points) {
-  const TriangleColumns triangles;
-  Source source(6);
-  for (std::size_t i = 0; i < most; i += 6)
-    for (const LaneBits active : {LaneBits(nullptr), LaneBits(some_lanes.data())})
-      for (const std::size_t n : sizes) {
-        const Float3 point = source.point(2);
-        Distances mine, of_scalar;
-        distances(point, triangles.arrays(n), mine.of(n), {.path = &path(), .active = active});
-        distances(point, triangles.arrays(n), of_scalar.of(n), {.path = &scalar(), .active = active});
-        for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE(same_bytes(mine.number[k], of_scalar.number[k]));
-        const ClosestPoint found =
-                               closest_point(point, triangles.arrays(n), {.path = &path(), .active = active}),
-                           expected = closest_point(point, triangles.arrays(n),
-                                                    {.path = &scalar(), .active = active});
-        EXPECT_TRUE(same_bytes(found, expected));
-      }
-  count(2);
   const PointKernels &mine = kernels_of(path()).points, &of_scalar = kernels_of(scalar()).points;
   compare_points_in_trees(*this, mine.closest_in_tree, of_scalar.closest_in_tree);
   compare_points_in_trees(*this, mine.counted, of_scalar.counted);

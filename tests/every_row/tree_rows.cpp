@@ -5,6 +5,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/rows.hpp"
 #include "../../dispatch/table/traversal.hpp"
+#include "../support/supported_paths.hpp"
 #include "every_row.hpp"
 #include "small_tree.hpp"
 
@@ -224,6 +225,8 @@ TEST_P(EveryRow, of_cells) {
   }
   expect_all_called(kernels);
 }
+
+INSTANTIATE_TEST_SUITE_P(On, EveryRow, ::testing::ValuesIn(supported_paths()), path_name);
 
 }  // namespace
 }  // namespace raylanes::testing

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
+#include <cstdint>
 #include <vector>
 
 #include <raylanes/boxes.hpp>
 #include <raylanes/points.hpp>
+#include <raylanes/prepared_ray.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
 
@@ -20,22 +21,30 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr auto reproducible = static_cast<std::size_t>(Grade::reproducible);
+// The rows of a grade that is not hashed are called with a mask, so that emulated processors meet their instructions.
+constexpr std::array<std::uint8_t, 100> all_active = [] {
+  std::array<std::uint8_t, 100> all;
+  all.fill(0xff);
+  return all;
+}();
+LaneBits mask_of(Grade grade) {
+  return grade == Grade::reproducible ? nullptr : all_active.data();
+}
 
 template <class T, class Method, std::size_t count>
 void add_roots(Hashes& hashes, const char* function, const std::array<RootMethodInfo<Method>, count>& methods,
                const RootRows<T, Method, count>& rows, const std::vector<T>& x) {
   std::vector<T> y(x.size());
   for (std::size_t method = 0; method < count; ++method) {
-    if (!methods[method].promise.reproducible) continue;
     rows.by[method](x.data(), y.data(), x.size());
+    if (!methods[method].promise.reproducible) continue;
     Hash hash;
     for (const T root : y) hash.add(root);
     hashes[std::string(function) + ' ' + std::string(methods[method].promise.name)] = hash.value();
   }
 }
 
-void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::string& name) {
+void add_triangles(Hashes& hashes, TriangleOptions options, const std::string& name) {
   const bool directional = options.test == TriangleTest::directional;
   const std::vector<Triangle> triangles = fixed_triangles();
   const TriangleColumns corners(triangles);
@@ -55,6 +64,7 @@ void add_triangles(Hashes& hashes, const TriangleOptions& options, const std::st
   const RayColumns columns(rays);
   const std::size_t n = rays.size();
   bits.assign((n + 7) / 8, 0);
+  options.active = mask_of(options.grade);
   std::vector<float> t(n), u(n), v(n);
   for (const Triangle& triangle : triangles) {
     hit_mask(columns.arrays(), triangle, bits, options);
@@ -76,7 +86,7 @@ void add_interval(Hash& hash, bool hit, float from, float to) {
 
 template <class Primitive>
 void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Primitive>& primitives,
-                   const IntervalRow& row) {
+                   const IntervalRow& row, LaneBits active) {
   const std::vector<Ray> rays = fixed_rays(701);
   const RayColumns ray_columns(rays);
   const Columns<Primitive> columns(primitives);
@@ -85,18 +95,18 @@ void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Pr
   Hash one_ray, one_primitive;
   std::vector<std::uint8_t> bits((primitives.size() + 7) / 8, 0);
   for (const Ray& ray : rays) {
-    row.any_of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data());
+    row.any_of_primitives(ray, columns.soa(), primitives.size(), active, bits.data());
     one_ray.add(bits);
-    row.of_primitives(ray, columns.soa(), primitives.size(), nullptr, bits.data(), from.data(), to.data());
+    row.of_primitives(ray, columns.soa(), primitives.size(), active, bits.data(), from.data(), to.data());
     for (std::size_t k = 0; k < primitives.size(); ++k)
       add_interval(one_ray, is_set(bits, k), from[k], to[k]);
   }
   bits.assign((rays.size() + 7) / 8, 0);
   for (const Primitive& primitive : primitives) {
     const auto numbers = numbers_of(primitive);
-    row.any_of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data());
+    row.any_of_rays(ray_columns.arrays(), numbers.data(), active, bits.data());
     one_primitive.add(bits);
-    row.of_rays(ray_columns.arrays(), numbers.data(), nullptr, bits.data(), from.data(), to.data());
+    row.of_rays(ray_columns.arrays(), numbers.data(), active, bits.data(), from.data(), to.data());
     for (std::size_t k = 0; k < rays.size(); ++k)
       add_interval(one_primitive, is_set(bits, k), from[k], to[k]);
   }
@@ -104,16 +114,44 @@ void add_intervals(Hashes& hashes, const std::string& name, const std::vector<Pr
   hashes[name + " Nx1"] = one_primitive.value();
 }
 
-void add_lines_through_spheres(Hashes& hashes, const Path& path) {
+void add_lines_through_spheres(Hashes& hashes, const Path& path, Grade grade) {
   const SphereColumns spheres(fixed_spheres());
+  const auto lines = kernels_of(path).spheres.line_of_spheres[static_cast<std::size_t>(grade)];
   std::vector<std::uint8_t> bits((spheres.size() + 7) / 8, 0);
   Hash hash;
   for (const Ray& ray : fixed_rays(701)) {
-    kernels_of(path).spheres.line_of_spheres[reproducible](ray, spheres.soa(), spheres.size(), nullptr,
-                                                           bits.data());
+    lines(ray, spheres.soa(), spheres.size(), mask_of(grade), bits.data());
     hash.add(bits);
   }
   hashes["sphere line 1xN"] = hash.value();
+}
+
+void add_closest_spheres(Hashes& hashes, const SphereOptions& options, const std::string& name) {
+  const SphereColumns spheres(fixed_spheres());
+  Hash hash;
+  for (const Ray& ray : fixed_rays(701)) hash.add(closest_hit(ray, spheres.arrays(), options));
+  hashes["sphere " + name + " closest"] = hash.value();
+}
+
+// Arrays of as many primitives as prepared rays take.
+void add_prepared_rays(Hashes& hashes, const Path& path) {
+  constexpr std::size_t most = PreparedRay::max_primitives;
+  const auto first = [](auto primitives) {
+    primitives.resize(most);
+    return primitives;
+  };
+  const BoxColumns boxes(first(fixed_boxes()));
+  const SphereColumns spheres(first(fixed_spheres()));
+  const TriangleColumns triangles(first(fixed_triangles()));
+  std::vector<float> entry(most);
+  Hash hash;
+  for (const Ray& ray : fixed_rays(701)) {
+    const PreparedRay prepared(ray, &path);
+    hash.add(hits(prepared, boxes.arrays(), entry));
+    for (const float t : entry) hash.add(t);
+    hash.add(closest_hit(prepared, spheres.arrays())), hash.add(closest_hit(prepared, triangles.arrays()));
+  }
+  hashes["prepared 1xN"] = hash.value();
 }
 
 void add_distances(Hashes& hashes, const Path& path) {
@@ -149,18 +187,24 @@ Hashes hashes_of_roots(const Path& path) {
 
 Hashes hashes_of_tests(const Path& path) {
   Hashes hashes;
-  for (const TriangleTestInfo& info : triangle_tests)
-    add_triangles(hashes, {.test = info.test, .path = &path}, info.name);
-  for (const BoxTestInfo& info : box_tests)
-    add_intervals(
-        hashes, std::string("box ") + info.name, fixed_boxes(),
-        interval_row(kernels_of(path).boxes.row[static_cast<std::size_t>(info.test)][reproducible]));
-  for (const SphereTestInfo& info : sphere_tests)
-    add_intervals(
-        hashes, std::string("sphere ") + info.name, fixed_spheres(),
-        interval_row(kernels_of(path).spheres.row[static_cast<std::size_t>(info.test)][reproducible]));
-  add_lines_through_spheres(hashes, path);
+  for (const Grade grade : {Grade::fast, Grade::reproducible}) {  // the last one is hashed
+    const auto rows = static_cast<std::size_t>(grade);
+    for (const TriangleTestInfo& info : triangle_tests)
+      add_triangles(hashes, {.test = info.test, .grade = grade, .path = &path}, info.name);
+    for (const BoxTestInfo& info : box_tests)
+      add_intervals(hashes, std::string("box ") + info.name, fixed_boxes(),
+                    interval_row(kernels_of(path).boxes.row[static_cast<std::size_t>(info.test)][rows]),
+                    mask_of(grade));
+    for (const SphereTestInfo& info : sphere_tests) {
+      add_intervals(hashes, std::string("sphere ") + info.name, fixed_spheres(),
+                    interval_row(kernels_of(path).spheres.row[static_cast<std::size_t>(info.test)][rows]),
+                    mask_of(grade));
+      add_closest_spheres(hashes, {.test = info.test, .grade = grade, .path = &path}, info.name);
+    }
+    add_lines_through_spheres(hashes, path, grade);
+  }
   add_distances(hashes, path);
+  add_prepared_rays(hashes, path);
   return hashes;
 }
 
