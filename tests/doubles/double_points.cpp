@@ -1,4 +1,4 @@
-// Closest points and signed distances of doubles: neighbours together, all scales at once, the most distance, signs.
+// Closest points and signed distances of doubles: all scales at once, the most distance, signs.
 #include <gmpxx.h>
 
 #include "../point/every_tree.hpp"
@@ -6,20 +6,6 @@
 
 namespace raylanes::testing {
 namespace {
-
-TEST(DoubleClosestPoints, go_together_as_they_go_alone) {
-  for (const DoubleCase& c : double_cases(0)) {
-    const std::vector<Double3> points =
-        clusters(points_for(c.mesh, by_level<std::size_t>(12, 30, 300), 22), size_of(c.mesh), 23);
-    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
-    std::vector<ClosestPointD> alone;
-    for (const Double3& point : points)
-      alone.push_back(tree.closest_point(point, {.path = &paths().front()}));
-    expect_same(alone, one_by_one(c.mesh, points), c.name);
-    expect_everywhere(c.mesh, points, alone, c.name);
-    if (HasFatalFailure()) return;
-  }
-}
 
 // Numbers of all sizes in one mesh, and planes that are far thinner than their coordinates.
 TEST(DoubleClosestPoints, have_all_scales_at_once) {

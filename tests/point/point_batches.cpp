@@ -130,57 +130,6 @@ TEST(ClosestPointsOfTrees, go_on_behind_those_that_are_ordered_together) {
   EXPECT_GT(reports, 0u);
 }
 
-// As one by one, to which brute force is compared above.
-void expect_alone(const Mesh& mesh, std::span<const Float3> points, const std::string& name) {
-  const Bvh bvh(mesh);
-  const KdTree kd(mesh);
-  for (const float most : {infinity, 0.05f, 0.0f}) {
-    std::vector<ClosestPoint> found(points.size()), expected;
-    for (const Float3& point : points)
-      expected.push_back(bvh.closest_point(point, {.max_distance = most, .path = &paths().front()}));
-    for (const Path* path : paths_with_own_queries()) {
-      bvh.closest_points(points, found, {.max_distance = most, .path = path});
-      expect_same(found, expected, name + " on " + path->name);
-      kd.closest_points(points, found, {.max_distance = most, .path = path});
-      expect_same(found, expected, name + ", k-d on " + path->name);
-    }
-  }
-}
-
-TEST(ClosestPointsOfTrees, go_together_as_they_go_alone) {
-  Random random(2730);
-  for (const NamedMesh& named : meshes()) {
-    if (named.mesh.triangles.empty()) continue;
-    expect_alone(named.mesh, clusters(named.mesh, by_level(10, 60, 60), 45, random), named.name);
-    if (HasFatalFailure()) return;
-  }
-}
-
-TEST(ClosestPointsOfTrees, go_together_at_every_scale) {
-  Random random(2731);
-  const Mesh mesh = triangle_soup(300, 0.2f, 2732);
-  const std::vector<Float3> points = clusters(mesh, by_level(6, 30, 30), 45, random);
-  for (const int exponent : {-140, -120, -60, 60, 90}) {
-    std::vector<Float3> at = points;
-    for (Float3& point : at)
-      for (float& x : point) x = std::ldexp(x, exponent);
-    expect_alone(scaled(mesh, exponent), at, "2^" + std::to_string(exponent));
-    const FloatModeScope scope(FloatMode::flush);
-    expect_alone(scaled(mesh, exponent), at, "flushed 2^" + std::to_string(exponent));
-  }
-}
-
-// More triangles at the same distance than can wait.
-TEST(ClosestPointsOfTrees, wait_in_turns) {
-  Random random(2733);
-  const Triangle t = random.triangle(1, {5, 0, 0});
-  Mesh mesh = triangle_soup(20, 0.2f, 2734);
-  for (int i = 0; i < 200; ++i) append(mesh, t);
-  std::vector<Float3> points;
-  for (int i = 0; i < 300; ++i) points.push_back(random.point(0.01f, {5, 0.5f, 1}));
-  expect_alone(mesh, points, "the same triangles");
-}
-
 class CountedClosestPoints : public Counting {};
 
 TEST_F(CountedClosestPoints, have_the_same_bytes_and_fewer_tests_than_triangles) {

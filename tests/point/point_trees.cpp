@@ -42,6 +42,14 @@ class ClosestPointsOf : public ::testing::Test {
       return points_for(mesh, count, seed);
     }
   }
+  static Points some_clusters(const AnyMesh& mesh, std::size_t count) {
+    if constexpr (has_floats) {
+      Random random(2730);
+      return clusters(mesh, static_cast<int>(count), 45, random);
+    } else {
+      return clusters(points_for(mesh, count, 22), size_of(mesh), 23);
+    }
+  }
   static std::vector<Case> cases() {
     std::vector<Case> all;
     if constexpr (has_floats) {
@@ -66,6 +74,18 @@ TYPED_TEST(ClosestPointsOf, trees_are_those_of_all_triangles) {
     if constexpr (!TestFixture::has_floats) expect_near(mesh, points, expected, name);
     const std::vector some(points.begin(), points.begin() + std::min<std::ptrdiff_t>(4, std::ssize(points)));
     expect_everywhere(mesh, some, one_by_one(mesh, some, 0.5), name, 0.5);
+    if (this->HasFatalFailure()) return;
+  }
+}
+
+// Points so near to each other that they go through trees together.
+TYPED_TEST(ClosestPointsOf, neighbours_have_the_bytes_of_points_alone) {
+  for (const auto& [name, mesh] : this->cases()) {
+    if (mesh.triangles.empty()) continue;
+    const auto points = this->some_clusters(mesh, by_level<std::size_t>(10, 30, 60));
+    const auto mosts = this->has_floats ? std::vector{infinite, 0.05, 0.0} : std::vector{infinite};
+    for (const double most : mosts)
+      expect_everywhere(mesh, points, one_by_one(mesh, points, most), name, most);
     if (this->HasFatalFailure()) return;
   }
 }
@@ -167,15 +187,28 @@ TYPED_TEST(ClosestPointsOf, any_bits) {
 
 TEST(ClosestPointsOfTrees, have_every_scale) {
   Random random(2718);
-  for (const int exponent : {-120, -100, -50, 50, 100, 120}) {
-    const Mesh mesh = scaled(triangle_soup(150, 0.3f, 2719), exponent);
-    std::vector<Float3> points = points_for(triangle_soup(150, 0.3f, 2719), 100, random);
+  const Mesh soup = triangle_soup(150, 0.3f, 2719);
+  for (const int exponent : {-140, -120, -100, -60, 60, 90, 120}) {
+    const Mesh mesh = scaled(soup, exponent);
+    std::vector<Float3> points = points_for(soup, 100, random);
+    for (const Float3& point : clusters(soup, by_level(6, 30, 30), 45, random)) points.push_back(point);
     for (std::size_t i = 4; i < points.size(); ++i)
       for (float& x : points[i]) x = std::ldexp(x, exponent);
     expect_everywhere(mesh, points, one_by_one(mesh, points), "2^" + std::to_string(exponent));
     const FloatModeScope scope(FloatMode::flush);
     expect_everywhere(mesh, points, one_by_one(mesh, points), "flushed 2^" + std::to_string(exponent));
   }
+}
+
+// More triangles at the same distance than can wait.
+TEST(ClosestPointsOfTrees, wait_in_turns) {
+  Random random(2733);
+  const Triangle t = random.triangle(1, {5, 0, 0});
+  Mesh mesh = triangle_soup(20, 0.2f, 2734);
+  for (int i = 0; i < 200; ++i) append(mesh, t);
+  std::vector<Float3> points;
+  for (int i = 0; i < 300; ++i) points.push_back(random.point(0.01f, {5, 0.5f, 1}));
+  expect_everywhere(mesh, points, one_by_one(mesh, points), "the same triangles");
 }
 
 // Small and large numbers in one mesh.
