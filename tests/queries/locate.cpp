@@ -218,39 +218,6 @@ TYPED_TEST(Locate, in_a_cube_of_all_numbers) {
   });
 }
 
-// A larger box, divided finely: each ray from the middle through one of its vertices leaves it once.
-TEST(LocateFloats, rays_from_the_centre_of_a_divided_box_through_all_its_vertices) {
-  Mesh mesh;
-  constexpr int cells = 12;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const int side : {-1, 1})
-      for (int a = 0; a < cells; ++a)
-        for (int b = 0; b < cells; ++b) {
-          const auto corner = [&](int i, int k) {
-            Float3 p;
-            p[axis] = 3.0f * static_cast<float>(side);
-            p[(axis + 1) % 3] = 6.0f * static_cast<float>(i) / cells - 3;
-            p[(axis + 2) % 3] = 6.0f * static_cast<float>(k) / cells - 3;
-            mesh.vertices.push_back(p);
-            return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
-          };
-          const std::uint32_t p = corner(a, b), q = corner(a + 1, b), r = corner(a + 1, b + 1),
-                              s = corner(a, b + 1);
-          if (side > 0)
-            mesh.triangles.insert(mesh.triangles.end(), {{p, q, r}, {p, r, s}});
-          else
-            mesh.triangles.insert(mesh.triangles.end(), {{p, r, q}, {p, s, r}});
-        }
-  std::vector<Ray> rays;
-  for (const Float3& vertex : mesh.vertices)
-    rays.push_back(make_ray({0, 0, 0}, vertex)), rays.push_back(make_ray({0.1f, -0.2f, 0.3f}, vertex));
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
-    std::vector<CrossingCount> counts(rays.size());
-    tree.count_crossings(rays, counts, {.path = path});
-    for (const CrossingCount& count : counts) ASSERT_EQ(count, (CrossingCount{1, 1}));
-  });
-}
-
 TEST(LocateFloats, takes_any_points) {
   const Mesh mesh = cube(-1, 1);
   const Bvh bvh(mesh);

@@ -122,30 +122,5 @@ TEST(Parity, holds_for_rays_at_vertices_and_edges_from_any_point) {
     expect_parity_of_more(std::strtoull(asked, nullptr, 10));
 }
 
-// From within, at vertices, edges and anywhere: nothing leaves without a hit.
-TEST(Parity, a_million_rays_from_inside_all_hit) {
-  const std::size_t count = by_level<std::size_t>(10'000, 100'000, 1'000'000);
-  const Mesh mesh = ellipsoid(4, {0, 0, 0});
-  Random random(56);
-  std::vector<Ray> rays;
-  while (rays.size() < count) {
-    const Triangle t = triangle_of(mesh.vertices, mesh.triangles[rays.size() % mesh.triangles.size()]);
-    const Float3 from = random.point(0.25f);
-    const float share = rays.size() % 3 == 0 ? 0.0f : 0.5f;
-    Float3 way{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      way[axis] = t.corner[0][axis] + share * (t.corner[1][axis] - t.corner[0][axis]) - from[axis];
-    rays.push_back(make_ray(from, way));
-  }
-  const Path* const best = supported_paths().back();
-  std::vector<Hit> hits(rays.size());
-  std::vector<CrossingCount> counts(rays.size());
-  const Bvh bvh(mesh);
-  bvh.closest(rays, hits, {.path = best});
-  bvh.count_crossings(rays, counts, {.path = best});
-  EXPECT_EQ(std::ranges::count_if(hits, [](const Hit& hit) { return !hit; }), 0);
-  EXPECT_EQ(std::ranges::count(counts, CrossingCount{1, 1}), static_cast<std::ptrdiff_t>(count));
-}
-
 }  // namespace
 }  // namespace raylanes::testing

@@ -69,21 +69,9 @@ TEST(Winding, points_in_lines_and_rays_through_the_boundary) {
   expect_windings(holed, points_in_lines(holed, by_level(300), 1.5f, 94));
 }
 
-TEST(Winding, any_size) {
-  for (const float scaling : {1e-38f, 1e-30f, 1e-12f, 1e12f, 1e30f, 1.5e38f}) {
-    SCOPED_TRACE(scaling);
-    Mesh mesh = without(double_fan(12, 0.25f), 0.3, 95);
-    scale(mesh, scaling);
-    expect_windings(mesh, points_around(mesh, by_level(40), 1.25f * scaling, 96));
-  }
-}
-
-TEST(Winding, far_from_zero_and_far_from_the_mesh) {
+TEST(Winding, far_from_zero) {
   Mesh mesh = without(ellipsoid(1, {0, 0, 0}), 0.2, 97);
   std::vector<Float3> points = points_around(mesh, by_level(40), 1.5f, 98);
-  for (const float far : {1e3f, 1e10f, 1e20f, 3e38f})
-    points.push_back({far, -far, 0.5f * far}), points.push_back({0, 0, far});
-  expect_windings(mesh, points);
   for (std::vector<Float3>* all : {&mesh.vertices, &points})
     for (Float3& p : *all)
       for (float& x : p) x += 4096;

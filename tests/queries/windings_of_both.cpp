@@ -86,6 +86,41 @@ TYPED_TEST(WindingsOf, meshes_with_holes_near_and_far) {
     }
 }
 
+// Squares of distances, and areas of triangles, leave the range of numbers.
+TYPED_TEST(WindingsOf, meshes_of_all_sizes) {
+  using T = TypeParam;
+  const Mesh open = without(double_fan(12, 0.25f), 0.3, 95);
+  const Mesh around{points_around(open, by_level<std::size_t>(20, 40, 400), 1.25f, 96), {}};
+  const std::vector<double> sizes = this->has_floats
+                                        ? std::vector{1e-38, 1e-30, 1e-12, 1e12, 1e30, 1.5e38}
+                                        : std::vector{0x1p-1070, 0x1p-1000, 0x1p-300, 0x1p-100, 0x1p100,
+                                                      0x1p300,   0x1p600,   0x1p1000, 0x1p1022};
+  for (const double size : sizes) {
+    SCOPED_TRACE(std::log2(size));
+    const auto sized = [&](const Mesh& of) {
+      auto mesh = mesh_of<T>(of);
+      for (auto& vertex : mesh.vertices)
+        for (T& x : vertex) x = static_cast<T>(size * double{x});
+      return mesh;
+    };
+    expect_windings(sized(open), sized(around).vertices, this->has_floats || size > 0x1p-200);
+  }
+}
+
+TYPED_TEST(WindingsOf, points_far_from_the_mesh) {
+  for (const Placement& place : this->places({as_it_is, {0x1p-900, {0, 0, 0}}, {0x1p900, {0, 0, 0}}})) {
+    const auto mesh = this->mesh_at(place, without(ellipsoid(1, {0, 0, 0}), 0.2, 97));
+    auto points = this->some_points(mesh, by_level(40), 10, 98);
+    for (const double size : {1.0, place.size})
+      for (const double far : {1e3, 1e10, 1e20, 3e38, 1e100, 1e200, 1e300, 1.7e308}) {
+        if (far * size > double{std::numeric_limits<TypeParam>::max()}) break;
+        const auto at = static_cast<TypeParam>(far * size);
+        points.push_back({at, -at, at / 2}), points.push_back({0, 0, at});
+      }
+    expect_windings(mesh, points);
+  }
+}
+
 TYPED_TEST(WindingsOf, triangles_that_have_nothing_in_common) {
   for (const Placement& place : this->places({{1e-3, {5e6, 0, 1e6}}})) {
     const auto soup = this->mesh_at(place, triangle_soup(this->has_floats ? 200 : 100, 1.0f, 90));
