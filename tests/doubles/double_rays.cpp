@@ -70,29 +70,6 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   }
 }
 
-// Each size is traced alone and together, and from points as packets.
-TEST(DoubleRays, of_all_sizes_have_the_hits_of_rational_arithmetic) {
-  for (const DoubleCase& c : double_cases(by_level<std::size_t>(100, 400, 1600))) {
-    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
-    for (const std::vector<RayD>& rays : {c.rays, aimed_rays_from_points(c.mesh, 200, 100, 5)})
-      for (const Facing facing : {Facing::any, Facing::front, Facing::back}) {
-        std::vector<HitD> expected, hits(rays.size());
-        for (const RayD& ray : rays) {
-          const std::vector<HitD> all = exact_hits(c.mesh, ray, facing);
-          expected.push_back(all.empty() ? HitD() : all[0]);
-        }
-        for (const Path* path : paths_with_own_queries()) {
-          SCOPED_TRACE(c.name + " on " + path->name);
-          const TraceOptionsD options{.path = path, .facing = facing};
-          expect_single_calls(tree, rays, options);
-          tree.closest(rays, hits, options);
-          for (std::size_t i = 0; i < hits.size(); ++i)
-            ASSERT_TRUE(same_bytes(hits[i], expected[i])) << text_of(rays[i]);
-        }
-      }
-  }
-}
-
 // Among rays from a point that hit the mesh.
 TEST(DoubleRays, from_a_point_without_an_end_or_a_direction_miss) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN(), far = HUGE_VAL;

@@ -1,5 +1,4 @@
-// Batches of rays: mixed with bad ones, of neighbours, of any length, on threads, with segments that end at
-// hits.
+// Batches of rays: with bad ones among neighbours, of any length, on threads, with segments that end at hits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,46 +15,6 @@
 
 namespace raylanes::testing {
 namespace {
-
-TEST(Bvh, rays_of_all_directions_and_bad_ones_in_one_batch) {
-  const Mesh mesh = triangle_soup(300, 0.4f, 24);
-  std::vector<Ray> rays = mixed_rays(mesh, by_level(1000), 2, {0, 0, 0}, 25);
-  const float bad[] = {nan, infinity, -infinity};
-  for (std::size_t i = 0; i < rays.size(); i += 5) {
-    const std::size_t kind = i / 5 % 9, axis = i % 3;
-    if (kind < 3) rays[i].origin[axis] = bad[kind];
-    if (kind >= 3 && kind < 6) rays[i].direction[axis] = bad[kind - 3];
-    if (kind == 6) rays[i].tmin = nan;
-    if (kind == 7) rays[i].tmax = nan;
-    if (kind == 8) rays[i].direction = {};
-  }
-  EXPECT_GT(expect_brute_force(mesh, rays), 10u);
-}
-
-TEST(Bvh, coherent_rays) {
-  Mesh mesh = triangle_soup(1000, 0.1f, 26);
-  std::vector<Ray> rays;
-  for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 64; ++x)
-      rays.push_back(make_ray({0.01f, 0.02f, 4}, {0.5f + 0.01f * static_cast<float>(x),
-                                                  0.3f + 0.01f * static_cast<float>(y), -4.0f}));
-  // Some share the direction but not the segment.
-  for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].tmax = 0.9f + 0.001f * static_cast<float>(i % 64);
-  for (std::size_t i = 3; i < rays.size(); i += 11) rays[i].tmin = 1.0f;
-  EXPECT_GT(expect_brute_force(mesh, std::span(rays).first(by_level(rays.size()))), 10u);
-}
-
-// Neighbours would share the first ray's axes.
-TEST(Bvh, neighbours_of_the_same_signs_along_other_axes) {
-  const Mesh mesh = triangle_soup(300, 0.4f, 40);
-  Random random(41);
-  std::vector<Ray> rays;
-  for (std::size_t i = 0; i < 192; ++i) {
-    const Triangle target = triangle_of(mesh.vertices, mesh.triangles[i % mesh.triangles.size()]);
-    rays.push_back(ray_to(random.point(0.5f, {-2, -2, -2}), target, 0.25, 0.25));
-  }
-  EXPECT_GT(expect_brute_force(mesh, rays), rays.size() / 2);
-}
 
 // Bad rays whose directions agree with their neighbours', in each lane of a register; an infinite direction would hit
 // all that its origin sees, at t = 0.
@@ -75,6 +34,14 @@ TEST(Bvh, bad_rays_among_coherent_ones) {
     std::vector<Ray> rays(17 * 16, good);
     for (std::size_t i = 0; i < rays.size(); i += 17) rays[i] = one;
     EXPECT_EQ(expect_brute_force(mesh, rays), rays.size() - 16);
+  }
+}
+
+TEST(Bvh, of_any_small_size) {
+  for (const std::size_t size : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 15u, 16u, 17u, 63u, 64u, 65u, 129u}) {
+    SCOPED_TRACE(size);
+    const Mesh mesh = triangle_soup(size, 0.5f, size);
+    EXPECT_GT(expect_brute_force(mesh, mixed_rays(mesh, by_level(400), 2, {0, 0, 0}, size)), 0u);
   }
 }
 

@@ -88,18 +88,20 @@ TEST_P(Rounded, and_other_tests_agree_with_double_precision_in_every_grade) {
   std::vector<oracle::DoubleTriangleTest> expected;
   for (const Ray& ray : rays) expected.push_back(nearest_in_double(mesh, ray));
   const Bvh bvh(mesh);
-  for (const TraceOptions& options : ways_by_every_test()) {
-    const std::vector<Hit> hits = trace(bvh, rays, options);
-    const std::vector<std::uint8_t> occluded = trace_occluded(bvh, rays, options);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_EQ(hits[i].primitive != no_primitive, expected[i].hit) << name_of(options) << " ray " << i;
-      ASSERT_EQ(occluded[i] != 0, expected[i].hit) << name_of(options) << " ray " << i;
-      if (!expected[i].hit) continue;
-      ASSERT_NEAR(hits[i].t, expected[i].t, 1e-4 * std::max(1.0, expected[i].t)) << name_of(options);
-      ASSERT_NEAR(hits[i].u, expected[i].u, 1e-3) << name_of(options) << " ray " << i;
-      ASSERT_NEAR(hits[i].v, expected[i].v, 1e-3) << name_of(options) << " ray " << i;
+  const KdTree kdtree(mesh);
+  for (const TriangleTree* tree : std::initializer_list<const TriangleTree*>{&bvh, &kdtree})
+    for (const TraceOptions& options : ways_by_every_test()) {
+      const std::vector<Hit> hits = trace(*tree, rays, options);
+      const std::vector<std::uint8_t> occluded = trace_occluded(*tree, rays, options);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(hits[i].primitive != no_primitive, expected[i].hit) << name_of(options) << " ray " << i;
+        ASSERT_EQ(occluded[i] != 0, expected[i].hit) << name_of(options) << " ray " << i;
+        if (!expected[i].hit) continue;
+        ASSERT_NEAR(hits[i].t, expected[i].t, 1e-4 * std::max(1.0, expected[i].t)) << name_of(options);
+        ASSERT_NEAR(hits[i].u, expected[i].u, 1e-3) << name_of(options) << " ray " << i;
+        ASSERT_NEAR(hits[i].v, expected[i].v, 1e-3) << name_of(options) << " ray " << i;
+      }
     }
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rays, Rounded,

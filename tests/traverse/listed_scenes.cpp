@@ -1,12 +1,13 @@
 // Trees over real meshes against a brute force, byte for byte. The meshes are no part of the project: the
 // environment variable RAYLANES_SCENES names their directory, without it the tests are skipped.
-#include "listed_scenes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "../../accel/mesh/bounding_boxes.hpp"
@@ -18,22 +19,45 @@
 namespace raylanes::testing {
 namespace {
 
-// The listed ones, and those that are hard on traversals: needles, slivers, thin triangles far away.
+struct ListedScene {
+  std::filesystem::path file;  // may be missing
+  std::size_t triangles = 0;   // 0 if no list says how many
+};
+
+// The lines of scenes.tsv by name, file and number of triangles; meshes that are hard on traversals: needles, slivers,
+// thin triangles far away; and every tenth frame of the animated character, small triangles of which many are thin.
 std::vector<ListedScene> scenes_to_trace() {
-  std::vector<ListedScene> scenes = listed_scenes();
+  const char* const named = std::getenv("RAYLANES_SCENES");
+  const std::filesystem::path folder = named == nullptr ? "" : named;
+  std::vector<ListedScene> scenes;
+  std::ifstream list(folder / "scenes.tsv");
+  for (std::string line; std::getline(list, line);) {
+    std::istringstream columns(line);
+    std::string name, file;
+    ListedScene scene;
+    if (line.starts_with('#') || !std::getline(columns, name, '\t')) continue;
+    std::getline(columns, file, '\t') >> scene.triangles;
+    scene.file = folder / file;
+    scenes.push_back(scene);
+  }
   for (const char* name :
        {"nasty_needles.obj", "nasty_far_thin.obj", "nasty_slivers.obj", "nasty_print.stl", "nasty_tree.obj"})
-    scenes.push_back({name, scenes_folder() / name, 0});
+    scenes.push_back({folder / name});
+  std::vector<std::filesystem::path> frames;
+  if (std::filesystem::is_directory(folder / "cally"))
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "cally"))
+      if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
+        frames.push_back(entry.path());
+  std::sort(frames.begin(), frames.end());
+  for (std::size_t i = 0; i < frames.size(); i += 10) scenes.push_back({frames[i]});
   return scenes;
 }
 
 class SceneOnDisk : public ::testing::TestWithParam<ListedScene> {};
 
 TEST_P(SceneOnDisk, is_traced_as_by_brute_force) {
-  const auto& [_, file, triangles] = GetParam();
-  if (scenes_folder().empty())
-    GTEST_SKIP() << "RAYLANES_SCENES is not set: it names the folder that holds " << file;
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no file " << file;
+  const auto& [file, triangles] = GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "RAYLANES_SCENES names no folder that holds " << file;
   const Mesh mesh = bench::read_mesh(file);
   EXPECT_TRUE(triangles == 0 || mesh.triangles.size() == triangles) << mesh.triangles.size();
   Box bounds = empty_box;
@@ -57,29 +81,6 @@ INSTANTIATE_TEST_SUITE_P(Meshes, SceneOnDisk, ::testing::ValuesIn(scenes_to_trac
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   return std::to_string(mesh.index) + '_' + name;
 });
-
-// Every tenth frame of the animated character, whose triangles are small and many of them thin.
-TEST(AnimationOnDisk, frames_are_traced_as_by_brute_force) {
-  const std::filesystem::path folder = scenes_folder() / "cally";
-  if (scenes_folder().empty() || !std::filesystem::is_directory(folder))
-    GTEST_SKIP() << "RAYLANES_SCENES is not set, or there is no folder cally/ of frames in it";
-  std::vector<std::filesystem::path> frames;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() != ".md" && entry.path().extension() != ".txt")
-      frames.push_back(entry.path());
-  std::sort(frames.begin(), frames.end());
-  ASSERT_FALSE(frames.empty());
-  for (std::size_t i = 0; i < frames.size(); i += 10) {
-    SCOPED_TRACE(frames[i].filename());
-    const Mesh mesh = bench::read_mesh(frames[i]);
-    Box bounds = empty_box;
-    for (const Float3& vertex : mesh.vertices) extend(bounds, vertex);
-    const Float3 centre = raylanes::centre(bounds);
-    const std::vector<Ray> rays =
-        mixed_rays(mesh, by_level(40, 800, 2000), 2 * (bounds.hi[1] - centre[1]), centre, i);
-    EXPECT_GT(expect_brute_force(mesh, rays), 0u);
-  }
-}
 
 }  // namespace
 }  // namespace raylanes::testing
