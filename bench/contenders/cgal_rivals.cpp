@@ -7,10 +7,6 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
-#include <iterator>
-#include <stdexcept>
-#include <vector>
-
 #include "../../accel/mesh/bounding_boxes.hpp"
 #include "rivals.hpp"
 

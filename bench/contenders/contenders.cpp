@@ -1,8 +1,5 @@
 #include "contenders.hpp"
 
-#include <algorithm>
-#include <cstring>
-
 namespace raylanes::bench {
 namespace {
 

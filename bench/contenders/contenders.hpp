@@ -2,13 +2,6 @@
 // the user's hits; conversion is part of the work, but for packed contenders.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
 #include "embree/embree_contender.hpp"

@@ -1,9 +1,5 @@
 #include "fast_winding.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace raylanes::bench {
 namespace {
 

@@ -3,11 +3,9 @@
 // Taylor series.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes::bench {
 

@@ -2,10 +2,6 @@
 // caller's own and for closest points, CGAL's trees (Alliez, Tayeb, Wormser 2009).
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/queries.hpp>
 

@@ -1,7 +1,5 @@
 #include "scene_contenders.hpp"
 
-#include <algorithm>
-
 #include "../support/rulers/measure.hpp"
 
 namespace raylanes::bench {

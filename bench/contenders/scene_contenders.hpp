@@ -1,11 +1,6 @@
 // The time of scenes and of a user's own tests compared with the tree of the same triangles.
 #pragma once
 
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/mesh.hpp>
 #include <raylanes/scene.hpp>

@@ -1,6 +1,5 @@
 #include "scene_trees.hpp"
 
-#include <cmath>
 #include <list>
 
 #include "../support/rulers/progress.hpp"

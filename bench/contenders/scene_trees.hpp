@@ -1,10 +1,6 @@
 // One scene: built by each builder and by Embree in turns, then traced through each tree.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "../rows/tree_counts.hpp"
 #include "../support/pictures/heatmap.hpp"
 #include "../support/rulers/measure.hpp"

@@ -3,12 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <stdexcept>
 
 #include "../support/rulers/progress.hpp"
 #include "embree/embree_contender.hpp"

@@ -1,11 +1,6 @@
 // Stages of a tree from its mesh to its file and back: the seconds and peak memory of each, beside Embree.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "../rows/tree_counts.hpp"
 #include "../support/rulers/measure.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"

@@ -1,7 +1,3 @@
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-
 #include <raylanes/cpu_features.hpp>
 
 #include "../../accel/mesh/bounding_boxes.hpp"

@@ -1,7 +1,5 @@
 #include "workload.hpp"
 
-#include <stdexcept>
-
 namespace raylanes::bench {
 namespace {
 

@@ -1,12 +1,6 @@
 // The rays that a scene is traced with.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
 #include "../support/rays/ray_sets.hpp"

@@ -1,9 +1,5 @@
 #include "count_tables.hpp"
 
-#include <algorithm>
-#include <map>
-#include <string>
-
 namespace raylanes::bench {
 namespace {
 

@@ -2,13 +2,9 @@
 
 #include <sys/utsname.h>
 
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iostream>
-#include <string_view>
 #include <thread>
 
 #include <raylanes/version.hpp>

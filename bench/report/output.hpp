@@ -1,10 +1,9 @@
 // The output of all commands: tables for people, JSON for programs.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include <nlohmann/json.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,9 +1,7 @@
 #include "row_table.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <iostream>
-#include <utility>
 
 #include "../support/readers/printable.hpp"
 #include "table_format.hpp"

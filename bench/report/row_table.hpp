@@ -1,10 +1,6 @@
 // Rows for people and for programs: each value is named once, with its column and its key.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "../support/rulers/measure.hpp"
 #include "output.hpp"
 

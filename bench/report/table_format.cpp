@@ -1,7 +1,5 @@
 #include "table_format.hpp"
 
-#include <algorithm>
-
 #include "../support/readers/printable.hpp"
 
 namespace raylanes::bench {

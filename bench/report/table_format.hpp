@@ -1,12 +1,6 @@
 // Tables as text: aligned, Markdown, CSV.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "output.hpp"
 
 namespace raylanes::bench {

@@ -5,11 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <iostream>
-#include <string>
 
+#include "../support/std.hpp"
 #include "exits.hpp"
 
 namespace raylanes::bench {

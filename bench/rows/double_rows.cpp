@@ -1,10 +1,5 @@
 #include "double_rows.hpp"
 
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <memory>
-
 #include "../contenders/rivals.hpp"
 #include "../support/rays/aim.hpp"
 

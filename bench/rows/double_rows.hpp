@@ -1,10 +1,6 @@
 // Rays of doubles by us, in calls of one ray and in a batch, beside floats, Embree and CGAL in the same rounds.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../contenders/workload.hpp"

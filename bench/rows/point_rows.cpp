@@ -1,11 +1,5 @@
 #include "point_rows.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/kdtree.hpp>

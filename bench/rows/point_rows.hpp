@@ -1,22 +1,12 @@
 // How fast points are located, their closest points and signed distances found, beside others on the same points.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/types.hpp>
 
-#include "../support/readers/printable.hpp"
 #include "../support/oracles/winding_sum.hpp"
+#include "../support/readers/printable.hpp"
 #include "../support/rulers/measure.hpp"
 #include "../support/scenes/mesh_and_camera.hpp"
 

@@ -1,11 +1,5 @@
 #include "query_rows.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <memory>
-
 #include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_rays.hpp"
 

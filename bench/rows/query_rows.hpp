@@ -1,10 +1,6 @@
 // All hits and crossings of a ray set by us, and the same work by Embree and CGAL in the same rounds.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../contenders/workload.hpp"

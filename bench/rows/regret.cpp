@@ -1,8 +1,5 @@
 #include "regret.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-
 #include "../../accel/builders/mesh_build.hpp"
 #include "../../accel/builders/mesh_references.hpp"
 

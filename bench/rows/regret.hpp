@@ -1,9 +1,6 @@
 // The cost of a chosen tree compared with the best one: the time to build it and to trace so many rays through it.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "../contenders/scene_trees.hpp"
 
 namespace raylanes::bench {

@@ -1,8 +1,5 @@
 #include "tree_counts.hpp"
 
-#include <algorithm>
-#include <optional>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../report/exits.hpp"
 #include "../support/rulers/measure.hpp"

@@ -2,10 +2,7 @@
 // (median split, equal partition, SAH), with more recent builders.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <list>
-#include <vector>
 
 #include "../contenders/contenders.hpp"
 

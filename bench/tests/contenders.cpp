@@ -1,16 +1,5 @@
 // Embree in every mode beside our own answers, contenders that lie, and results that the tool calls a broken promise.
-#include <gtest/gtest.h>
 #include <xmmintrin.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <stdexcept>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 #include <raylanes/bvh.hpp>
 

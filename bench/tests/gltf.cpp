@@ -1,11 +1,4 @@
 // glTF: scenes of nodes, and files that must be refused before they cost anything.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "mesh_files.hpp"
 
 namespace raylanes::bench {

@@ -1,15 +1,7 @@
 // How the tool times and counts.
 #include "../support/rulers/measure.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <map>
-#include <set>
-#include <utility>
-#include <vector>
-
+#include "../../tests/support/std.hpp"
 #include "../support/rulers/instruction_counter.hpp"
 
 namespace raylanes::bench {

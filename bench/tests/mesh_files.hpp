@@ -1,19 +1,6 @@
 // Mesh files written byte by byte, and a folder for them that goes with the test.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "../../tests/support/message_of.hpp"
 #include "../support/readers/mesh_reader.hpp"
 #include "temporary_folder.hpp"

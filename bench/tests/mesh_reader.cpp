@@ -1,12 +1,4 @@
 // read_mesh against files that the test writes byte by byte, and what it says of those that it refuses.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "mesh_files.hpp"
 
 namespace raylanes::bench {

@@ -1,14 +1,7 @@
 // Primary, shadow, diffuse, ambient occlusion and random rays.
 #include "../support/rays/ray_sets.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
+#include "../../tests/support/std.hpp"
 #include "../support/scenes/vector3.hpp"
 #include "scene_samples.hpp"
 

@@ -1,15 +1,5 @@
 // Built-in scenes, whose bytes are recorded, see recorded_scenes.hpp; scenes from files, cameras and pictures.
-#include <gtest/gtest.h>
 #include <png.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include <raylanes/closed_mesh.hpp>
 

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
-#include <string>
+
+#include "../../tests/support/std.hpp"
 
 namespace raylanes::bench {
 

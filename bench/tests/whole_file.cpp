@@ -2,16 +2,11 @@
 #include "../report/whole_file.hpp"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <iterator>
-#include <string>
 
 #include "../../tests/support/message_of.hpp"
 #include "../report/exits.hpp"

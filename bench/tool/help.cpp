@@ -1,9 +1,3 @@
-#include <algorithm>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <utility>
-
 #include "../report/exits.hpp"
 #include "../report/table_format.hpp"
 #include "commands.hpp"

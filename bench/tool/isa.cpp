@@ -1,5 +1,3 @@
-#include <memory>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
 #include "../report/exits.hpp"

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "../report/row_table.hpp"
 #include "../rows/kernels/kernel_rows.hpp"

@@ -1,17 +1,9 @@
 // Options that take numbers. Each option refuses text that is not a decimal number within its limits.
 #pragma once
 
-#include <algorithm>
 #include <charconv>
 #include <concepts>
-#include <cstddef>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <type_traits>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include <raylanes/bvh.hpp>
 

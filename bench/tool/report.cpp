@@ -2,12 +2,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../../dispatch/checked.hpp"
 #include "commands.hpp"

@@ -1,7 +1,4 @@
-#include <algorithm>
 #include <iostream>
-#include <memory>
-#include <set>
 
 #include "../rows/roots/root_rows.hpp"
 #include "../support/roots/root_judge.hpp"

@@ -1,9 +1,6 @@
 #include "shared_options.hpp"
 
-#include <algorithm>
-#include <cstdio>
 #include <iostream>
-#include <stdexcept>
 
 #include "../report/exits.hpp"
 #include "../support/pictures/image.hpp"

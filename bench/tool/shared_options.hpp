@@ -1,13 +1,7 @@
 // Options that commands share. Each is declared once, here, and means the same in every command that takes it.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <filesystem>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <raylanes/paths.hpp>

@@ -2,8 +2,6 @@
 #include <exception>
 #include <iostream>
 #include <new>
-#include <stdexcept>
-#include <string>
 
 #include <raylanes/version.hpp>
 

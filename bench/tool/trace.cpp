@@ -1,11 +1,5 @@
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <set>
-#include <type_traits>
 
 #include "../contenders/trace/trace_scene.hpp"
 #include "../report/count_tables.hpp"

@@ -1,8 +1,6 @@
 #include "trees.hpp"
 
-#include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "../contenders/embree/embree_contender.hpp"
 #include "../report/count_tables.hpp"

@@ -1,8 +1,6 @@
 // The command `trees`: compares builders, or measures the choice among them or frames of a mesh in motion.
 #pragma once
 
-#include <vector>
-
 #include "../contenders/scene_trees.hpp"
 #include "../support/readers/sequence.hpp"
 #include "shared_options.hpp"

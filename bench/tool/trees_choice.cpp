@@ -1,5 +1,4 @@
 // raylanes trees --choose: the choices of BuildOptions::choose compared with all fixed builders.
-#include <algorithm>
 #include <iostream>
 
 #include "../report/row_table.hpp"

@@ -1,7 +1,5 @@
 #include "box_answers.hpp"
 
-#include <algorithm>
-
 namespace raylanes::testing {
 
 std::vector<BoxVariant> conservative_variants() {

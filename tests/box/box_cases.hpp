@@ -1,10 +1,9 @@
 // Rays and boxes with a name and a known answer, and every place and direction of one axis.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include <raylanes/types.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

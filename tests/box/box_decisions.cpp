@@ -1,13 +1,6 @@
 // All box tests on every path: each within its rounding of exact slabs, the directional one without a false miss
 // and with false hits only where its padding reaches; the conservative one by a sharper bound too, and with the same
 // bits in both grades.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <vector>
-
 #include "box_answers.hpp"
 #include "box_judge.hpp"
 

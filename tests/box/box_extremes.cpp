@@ -1,11 +1,4 @@
 // All box tests at the extremes: every place and direction of one axis, named cases, bad numbers.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "box_answers.hpp"
 #include "box_cases.hpp"
 #include "box_judge.hpp"

@@ -1,8 +1,5 @@
 #include "box_judge.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace raylanes::testing {
 namespace {
 

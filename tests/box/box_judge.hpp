@@ -17,8 +17,6 @@
 // most 4u·|t| late and 12u·|o/d| + 4u·|t| early, exit as much late besides its widening, and never early.
 #pragma once
 
-#include <string>
-
 #include <raylanes/boxes.hpp>
 
 #include "../../bench/support/oracles/exact_box.hpp"

@@ -1,15 +1,6 @@
 // Binary trees over boxes: how builders are called, and what any of their trees must be.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "../../accel/batch/in_parallel.hpp"
 #include "../../accel/builders/builder_table.hpp"
 #include "../../accel/layout/bvh_arrays.hpp"

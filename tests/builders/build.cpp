@@ -1,11 +1,4 @@
 // Binary trees of every builder: on boxes, also such as meshes cannot give them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "../support/same_bytes.hpp"
 #include "box_trees.hpp"
 

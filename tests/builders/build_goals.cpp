@@ -1,12 +1,5 @@
 // The differences between builders of binary trees: where they divide, and what reinsertion gains; the collapse of
 // chains.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "../support/same_bytes.hpp"
 #include "box_trees.hpp"
 

@@ -1,11 +1,4 @@
 // Builders as people choose them: the hits of exact arithmetic, whatever the tree; and what trees cost.
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"

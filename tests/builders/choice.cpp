@@ -1,10 +1,5 @@
 // The builder that BuildOptions::choose takes: by the mesh and the number of rays alone, said in a line, and no hit
 // depends on it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "../../accel/builders/mesh_build.hpp"
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"

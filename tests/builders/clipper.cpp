@@ -1,9 +1,4 @@
 // The boxes of clipped triangles hold every part of them, and little more.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "../../accel/builders/builder_table.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"

@@ -1,10 +1,4 @@
 // The order of a Morton tree's primitives, against a sort of codes that the test makes itself.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 #include "../../accel/builders/builder_table.hpp"
 #include "../support/random_input.hpp"
 

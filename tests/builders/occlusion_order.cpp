@@ -1,8 +1,4 @@
 // The order of a node's children: the one that hides most is first. Compared with sums in doubles over the subtrees.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include <raylanes/bvh.hpp>
 
 #include "../support/random_input.hpp"

@@ -1,11 +1,6 @@
 // Which slots subtrees get: the vectors of accel/layout/slot_plan.cpp against the textbook's recursion.
 #include "../../accel/layout/slot_plan.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <vector>
-
 #include "../../accel/layout/cost.hpp"
 #include "../../accel/mesh/bounding_boxes.hpp"
 #include "../support/random_input.hpp"

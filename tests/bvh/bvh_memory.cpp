@@ -1,12 +1,5 @@
 // Memory that runs out: nothing has been written then.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
-#include <string>
-#include <vector>
 
 #include "../support/limited_memory.hpp"
 #include "../support/random_input.hpp"

@@ -1,14 +1,4 @@
 // Bvhs and BvhDs as bytes: refitted as before, and refused if they are no tree though their checksum is right.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <functional>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

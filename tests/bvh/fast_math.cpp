@@ -1,10 +1,8 @@
 // A user's program that is compiled with -O3 -ffast-math, where the compiler takes infinities for impossible: a hit is
 // still a hit, and a miss none.
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include <raylanes/raylanes.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes {
 namespace {

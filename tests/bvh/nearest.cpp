@@ -1,10 +1,4 @@
 // Meshes of every kind as people hand them to a tree, and the results of single rays.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <span>
-#include <vector>
-
 #include <raylanes/raylanes.hpp>
 
 #include "../support/message_of.hpp"

@@ -1,12 +1,6 @@
 // Parts of trees of either number that a test spoils before it saves them.
 #pragma once
 
-#include <cstring>
-#include <functional>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-
 #include "../../accel/file/tree_file.hpp"
 #include "../support/message_of.hpp"
 #include "../trees/both_trees.hpp"

@@ -3,13 +3,6 @@
 
 #include <raylanes/raylanes.h>
 
-#include <algorithm>
-#include <cstring>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include <raylanes/doubles.hpp>
 
 #include "../fuzz/any_doubles.hpp"

@@ -1,12 +1,6 @@
 // Arrays with a stride that notice what a call reads or writes beside their elements.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <vector>
-
 #include "../support/guarded_array.hpp"
 
 namespace raylanes::testing {

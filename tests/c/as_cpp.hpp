@@ -1,11 +1,6 @@
 // Trees of C and of C++ over one mesh, and options as both take them, to compare what calls write.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_cases.hpp"
 #include "../support/same_bytes.hpp"

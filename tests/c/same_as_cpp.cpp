@@ -1,10 +1,4 @@
 // The C functions write the bytes that the classes return, for every option, on every path; and nothing else.
-#include <gtest/gtest.h>
-
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "as_cpp.hpp"
 #include "queries.hpp"
 

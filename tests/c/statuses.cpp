@@ -1,13 +1,6 @@
 // Statuses of exceptions, of memory that runs out, and options that end early.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <functional>
 #include <new>
 #include <random>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <system_error>
 #include <thread>
 

@@ -1,15 +1,6 @@
 // The path in use: resolved before main and by threads that race, forced, and by environment.
-#include <gtest/gtest.h>
-
-#include <array>
 #include <atomic>
-#include <cstdio>
-#include <cstdlib>
-#include <optional>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include <raylanes/paths.hpp>
 

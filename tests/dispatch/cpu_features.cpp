@@ -1,5 +1,4 @@
 // Detection of instruction sets: every bit for itself, and this machine against what others say of it.
-#include <gtest/gtest.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -8,9 +7,6 @@
 #endif
 
 #include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
 
 #include "recorded_machines.hpp"
 

@@ -1,11 +1,7 @@
 // Views of temporaries: refused where they would show free memory, taken where they live as long as the call.
-#include <array>
-#include <span>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include <raylanes/raylanes.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes {
 namespace {

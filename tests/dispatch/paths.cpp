@@ -1,12 +1,4 @@
 // The list of paths, and which of them a recorded machine chooses or is refused.
-#include <gtest/gtest.h>
-
-#include <iterator>
-#include <set>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-
 #include <raylanes/paths.hpp>
 #include <raylanes/version.hpp>
 

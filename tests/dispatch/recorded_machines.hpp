@@ -2,12 +2,9 @@
 // that each feature is.
 #pragma once
 
-#include <cstdint>
-#include <stdexcept>
-#include <string>
-#include <type_traits>
-
 #include <raylanes/cpu_features.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes {
 

@@ -1,10 +1,6 @@
 // Numbers in messages read back as they were.
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-
 #include "../../dispatch/checked.hpp"
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 namespace {

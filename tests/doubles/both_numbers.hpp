@@ -1,12 +1,6 @@
 // Trees, meshes and rays of floats and of doubles, for tests of both by one text.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/numbers.hpp"

@@ -1,13 +1,4 @@
 // Trees of doubles: layouts, ends of batches and of segments, and what is reported of them.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <functional>
-#include <stdexcept>
-
 #include "../support/guarded_array.hpp"
 #include "../support/message_of.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,9 +1,6 @@
 // Meshes of doubles and rays that meet them where it matters: at vertices, at edges, along planes.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 

@@ -1,14 +1,6 @@
 // Points beside meshes of doubles, and what holds for their closest points.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_point.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"

@@ -1,10 +1,5 @@
 // Batches of rays of doubles that go as streams or as packets: single calls, which rational arithmetic judges in
 // tests/queries/worlds/every_query.cpp, have their hits. And what ends the search of lists.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "../../accel/doubles/bvh_d_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../support/meshes.hpp"

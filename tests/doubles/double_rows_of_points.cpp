@@ -1,9 +1,5 @@
 // Points of doubles in rows along an axis, which share a ray: located as exactly as single points.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cfenv>
-#include <cmath>
 
 #include "../support/meshes.hpp"
 #include "../support/supported_paths.hpp"

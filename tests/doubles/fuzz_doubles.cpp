@@ -1,9 +1,6 @@
 // Rays of doubles of any bits to trees over meshes of any finite ones, on any path: hits, occlusion, lists, crossings,
 // next hits and rows of points with the bytes of rational numbers, closest points within their bound, nothing written
 // elsewhere.
-#include <algorithm>
-#include <cmath>
-
 #include "../../bench/support/oracles/exact_point.hpp"
 #include "../fuzz/any_doubles.hpp"
 #include "../fuzz/any_queries.hpp"

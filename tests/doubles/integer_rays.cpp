@@ -1,11 +1,5 @@
 // Rays of doubles against integers, where nothing rounds: a million rays aimed at corners, edges and planes of meshes
 // on a lattice, which is moved and scaled so that doubles still have it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,14 +1,10 @@
 // The inputs of every row: the same few rays and triangles on every machine.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/splitmix.hpp"
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

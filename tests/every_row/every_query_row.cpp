@@ -1,6 +1,4 @@
 // The rows of boundaries, and of lists, crossings and next hits: the bytes of scalar, whatever order lists come in.
-#include <set>
-
 #include "../../accel/mesh/boundary_tree.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/queries.hpp"

@@ -3,17 +3,6 @@
 // so that each emulated processor can meet the instructions of all rows; tests/reproducible calls the rows of arrays.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <set>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../support/same_bytes.hpp"

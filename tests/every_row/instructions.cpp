@@ -1,11 +1,10 @@
 // A processor executes exactly the features that it reports: else an object with a forbidden instruction would pass.
-#include <gtest/gtest.h>
-
 #include <csetjmp>
 #include <csignal>
-#include <cstdlib>
 
 #include <raylanes/cpu_features.hpp>
+
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 namespace {

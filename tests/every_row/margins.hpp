@@ -2,14 +2,12 @@
 // what the result is divided by. Infinity where so much could change the decision.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <limits>
 
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/vector3.hpp"
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

@@ -1,8 +1,6 @@
 // The BVH that rows are called with, and the memory that they are given.
 #pragma once
 
-#include <cstddef>
-
 #include "../../accel/layout/bvh_arrays.hpp"
 #include "../support/meshes.hpp"
 #include "emulated_inputs.hpp"

@@ -1,8 +1,6 @@
 // Meshes of any finite doubles, and rays of any bits that may meet them.
 #pragma once
 
-#include <cmath>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "support.hpp"
 

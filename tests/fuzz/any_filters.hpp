@@ -1,10 +1,6 @@
 // Any rays, one a call, whose callers reject hits.
 #pragma once
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "../support/same_bytes.hpp"
 #include "support.hpp"
 

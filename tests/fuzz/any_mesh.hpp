@@ -1,8 +1,6 @@
 // Meshes of any finite numbers, and rays of any bits that may meet them.
 #pragma once
 
-#include <cmath>
-
 #include <raylanes/mesh.hpp>
 
 #include "../support/random_input.hpp"

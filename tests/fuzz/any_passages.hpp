@@ -1,11 +1,6 @@
 // The passages of any rays through trees over meshes of any bits.
 #pragma once
 
-#include <algorithm>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/stretches.hpp>
 
 #include "../oracles/passage_oracle.hpp"

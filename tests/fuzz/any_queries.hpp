@@ -1,8 +1,6 @@
 // The queries of a run to a tree over a mesh of any floats or doubles, judged by rational numbers.
 #pragma once
 
-#include <utility>
-
 #include "any_filters.hpp"
 #include "query_checks.hpp"
 

@@ -2,14 +2,8 @@
 // a generator that they seed. So a few bytes fill arrays of any size, and each byte still steers something.
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-
 #include "../../bench/support/scenes/splitmix.hpp"
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

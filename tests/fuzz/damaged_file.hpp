@@ -1,11 +1,6 @@
 // Files of trees that are damaged at random, with a checksum that covers it up.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
-#include <string>
-
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 

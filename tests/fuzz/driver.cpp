@@ -10,15 +10,8 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <fstream>
-#include <iterator>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "../../bench/support/scenes/splitmix.hpp"
 #include "../support/level.hpp"

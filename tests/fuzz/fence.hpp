@@ -2,10 +2,6 @@
 // test that runs a few thousand times, for one that runs millions of times.
 #pragma once
 
-#include <cstddef>
-#include <cstring>
-#include <string>
-
 #include "../support/system/guard_pages.hpp"
 #include "targets.hpp"
 

@@ -1,10 +1,6 @@
 // Checks of fuzzed queries of rays and points, in trees over meshes of floats or of doubles.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "../queries/summed_winding.hpp"
 #include "../support/limited_memory.hpp"

@@ -1,11 +1,6 @@
 // Views whose elements lie apart, as memory for fuzz targets.
 #pragma once
 
-#include <cstddef>
-#include <cstring>
-#include <string>
-#include <vector>
-
 #include "fence.hpp"
 #include "support.hpp"
 

@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <cstdlib>
-
 #include "targets.hpp"
 
 namespace raylanes::testing {

@@ -1,9 +1,6 @@
 // Helpers that the fuzz targets share.
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 #include <raylanes/triangles.hpp>
 

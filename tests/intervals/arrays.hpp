@@ -1,12 +1,6 @@
 // Tests of boxes and of spheres over arrays: any length, alignment and mask.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <span>
-#include <string>
-#include <vector>
-
 #include "interval_answers.hpp"
 
 namespace raylanes::testing {

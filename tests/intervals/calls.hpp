@@ -2,12 +2,6 @@
 // and that nothing is written then.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "interval_answers.hpp"
 

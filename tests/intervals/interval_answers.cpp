@@ -1,10 +1,5 @@
 #include "interval_answers.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 namespace raylanes::testing {
 
 namespace {

@@ -2,9 +2,6 @@
 // one result per pair, by all kernels at once, which must agree.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>

@@ -1,8 +1,5 @@
 // Builders of k-d trees make cells that hold every point of every triangle, bounded, the same on any number of
 // threads; what is reported of them.
-#include <algorithm>
-#include <cmath>
-
 #include "../support/message_of.hpp"
 #include "../support/same_bytes.hpp"
 #include "kd_trees.hpp"

@@ -1,9 +1,4 @@
 // k-d trees as bytes: refused if they are no tree though their checksum is right.
-#include <cstring>
-#include <functional>
-#include <sstream>
-#include <stdexcept>
-
 #include "../../accel/file/tree_file.hpp"
 #include "../support/message_of.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,11 +1,6 @@
 // Helpers for all tests of k-d trees.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../support/random_input.hpp"

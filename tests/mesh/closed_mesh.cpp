@@ -1,6 +1,4 @@
 // Whether meshes are closed, and what is said of those that are not.
-#include <gtest/gtest.h>
-
 #include <raylanes/closed_mesh.hpp>
 
 #include "../support/meshes.hpp"

@@ -1,10 +1,4 @@
 // Trees that are walked by hand.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <utility>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/bvh.hpp>
 #include <raylanes/spheres.hpp>

@@ -1,12 +1,4 @@
 // Batches as users have them: records of any size and alignment, runs of rays, more rays than streams take.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <span>
-#include <type_traits>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,11 +1,6 @@
 // How disagreements of two tracers are judged.
 #include "../../bench/support/oracles/disagreement.hpp"
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <vector>
-
 #include "../support/random_input.hpp"
 #include "../traverse/reference/reference_tracer.hpp"
 

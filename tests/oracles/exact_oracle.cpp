@@ -1,11 +1,5 @@
 // The decisions of the exact ray-triangle oracle against integers, at the ends of segments and on invalid input.
 // tests/triangle holds the library to the oracle's bounds, from both sides of each edge.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-
 #include "../../bench/support/oracles/double_triangle.hpp"
 #include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/triangle_scenes.hpp"

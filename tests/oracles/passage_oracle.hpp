@@ -2,10 +2,6 @@
 // ray meets a plane says on which edge it is; weights are not asked.
 #pragma once
 
-#include <algorithm>
-#include <set>
-#include <vector>
-
 #include "../../bench/support/oracles/rational_vectors.hpp"
 #include "../queries/query_oracle.hpp"
 

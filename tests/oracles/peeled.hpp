@@ -1,13 +1,6 @@
 // All answers of rays, asked for again and again behind the last ones.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "../support/same_bytes.hpp"
 
 namespace raylanes::testing {

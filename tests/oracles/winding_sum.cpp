@@ -1,12 +1,6 @@
 // Sums of solid angles: on triangles, in their planes, and near their edges.
 #include "../../bench/support/oracles/winding_sum.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../queries/open_meshes.hpp"
 #include "../queries/query_trees.hpp"

@@ -1,9 +1,4 @@
 // Points and arrays of triangles, against rationals.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-
 #include <raylanes/points.hpp>
 
 #include "../support/float_modes.hpp"

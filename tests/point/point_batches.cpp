@@ -1,14 +1,4 @@
 // Closest points of batches by trees: the bytes of points one by one, however a batch lies, and less work.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/raylanes.hpp>
 
 #include "../../accel/queries/closest_points.hpp"

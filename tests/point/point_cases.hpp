@@ -1,9 +1,6 @@
 // Points and triangles that are hard to measure between.
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_point.hpp"
 #include "../support/random_input.hpp"
 

@@ -1,12 +1,6 @@
 // Meshes and points, near and far, for closest points by trees.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/raylanes.hpp>
 
 #include "../support/meshes.hpp"

@@ -1,7 +1,5 @@
 // Closest points by trees of floats and of doubles: the bytes that all triangles one by one give, whatever tree,
 // builder, path and threads; and what rational numbers say of them.
-#include <gtest/gtest.h>
-
 #include "../doubles/both_numbers.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/level.hpp"

@@ -1,13 +1,6 @@
 // Meshes with large holes, whose boundaries are cut by chords, and points on these chords.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <tuple>
-#include <vector>
-
 #include "../support/random_input.hpp"
 
 namespace raylanes::testing {

@@ -1,8 +1,6 @@
 // Questions beyond the nearest hit, of rays and points of any bits to trees over meshes of any finite ones, on any
 // path: lists, counts and next hits with the bytes of rational numbers, locations, nothing written
 // elsewhere.
-#include <algorithm>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../fuzz/any_mesh.hpp"

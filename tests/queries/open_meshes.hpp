@@ -1,8 +1,6 @@
 // The winding numbers of a mesh beside sums over all triangles.
 #pragma once
 
-#include <cmath>
-
 #include "query_trees.hpp"
 #include "summed_winding.hpp"
 

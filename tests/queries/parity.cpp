@@ -1,9 +1,6 @@
 // From a point to infinity, at a vertex, an edge or anywhere: crossings are odd from inside, even from outside, and the
 // sum of their sides is that of the solid, whatever the direction. 10^5 rays, or about as many as RAYLANES_PARITY_RAYS
 // names: those that are more go to one tree on one path each, in turn.
-#include <cstdio>
-#include <cstdlib>
-
 #include "query_trees.hpp"
 
 namespace raylanes::testing {

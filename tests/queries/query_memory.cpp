@@ -1,10 +1,5 @@
 // Memory that runs out while questions are answered: a clean std::bad_alloc, and the next call is right.
-#include <cstddef>
-#include <cstring>
 #include <fstream>
-#include <functional>
-#include <sstream>
-#include <string>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

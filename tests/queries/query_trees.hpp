@@ -1,11 +1,6 @@
 // Every tree on every path, for questions beyond the nearest hit.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 

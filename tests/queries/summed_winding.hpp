@@ -1,11 +1,6 @@
 // The place of a point on a mesh, exactly, and its winding number as a sum over all triangles.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include <raylanes/closed_mesh.hpp>
 
 #include "../../bench/support/oracles/exact_rays.hpp"

@@ -1,6 +1,4 @@
 // The corners of triangles that hits name, and normals and positions made of them.
-#include <cmath>
-
 #include <raylanes/doubles.hpp>
 #include <raylanes/surface.hpp>
 

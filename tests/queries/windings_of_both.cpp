@@ -1,15 +1,5 @@
 // Winding numbers of meshes of floats and of doubles: against solid angles of all triangles, and by what must hold
 // exactly.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "../doubles/both_numbers.hpp"
 #include "chord_meshes.hpp"

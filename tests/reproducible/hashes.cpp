@@ -1,14 +1,6 @@
 // One hash a path over everything that promises the same bits on every path, against recorded ones: after a
 // change of the kernels they show that no bit of an answer has moved. A bit that is meant to move changes
 // its row below, in the commit that says why.
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdio>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "../../bench/support/reproducible/recorded_scenes.hpp"
 #include "../../bench/support/reproducible/tree_answers.hpp"
 #include "../../bench/support/scenes/procedural.hpp"

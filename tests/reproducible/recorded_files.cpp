@@ -2,18 +2,7 @@
 // them. Each is loaded and traced on every path. A format that changes gets another version number and files beside
 // these.
 // To write them: RAYLANES_RECORD=1 test_reproducible --gtest_filter='RecordedFiles.*'
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
-#include <iterator>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>

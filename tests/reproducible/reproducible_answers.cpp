@@ -1,10 +1,5 @@
 #include "reproducible_answers.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/points.hpp>
 #include <raylanes/prepared_ray.hpp>

@@ -1,9 +1,5 @@
 #include "reproducible_inputs.hpp"
 
-#include <bit>
-#include <cstdint>
-#include <limits>
-
 namespace raylanes::testing {
 namespace {
 

@@ -2,13 +2,11 @@
 // last bit may change: the recorded hashes stay.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../../bench/support/reproducible/fixed_rays.hpp"
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

@@ -1,9 +1,5 @@
 // Roots of doubles on every path: correct rounding by integers, bounds, special values, lengths. Nobody can
 // try all inputs, so the hard ones are constructed.
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"
 #include "rounded_root.hpp"

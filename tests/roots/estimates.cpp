@@ -1,7 +1,5 @@
 // Methods of floats with every estimate that the manuals allow, not only the processor's own. In [1, 4), and
 // reciprocals in [1, 2): elsewhere in a method's domain all is the same times a power of two.
-#include <gtest/gtest.h>
-
 #include <raylanes/roots.hpp>
 
 #include "../../bench/support/rulers/of_path.hpp"

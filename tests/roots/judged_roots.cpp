@@ -1,8 +1,4 @@
 // Roots of floats on every path: correct rounding, and the bounds of all methods.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
 #include "../support/random_input.hpp"

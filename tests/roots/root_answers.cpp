@@ -1,9 +1,5 @@
 // All ways to ask for roots agree, and keep what the accuracies that users name promise: on every path, by the public
 // functions.
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include <raylanes/cpu_features.hpp>
 #include <raylanes/roots.hpp>
 

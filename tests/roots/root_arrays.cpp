@@ -1,6 +1,4 @@
 // Roots as functions on arrays: lengths, places, what lies around them, modes of the processor.
-#include <gtest/gtest.h>
-
 #include "../../dispatch/table/roots.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"

@@ -1,6 +1,4 @@
 // The calls that public functions refuse, and their messages.
-#include <gtest/gtest.h>
-
 #include <raylanes/roots.hpp>
 
 #include "../support/message_of.hpp"

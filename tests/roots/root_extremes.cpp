@@ -1,6 +1,4 @@
 // Roots of floats: special values, alone and in company.
-#include <gtest/gtest.h>
-
 #include "../support/estimate_fault.hpp"
 #include "../support/random_input.hpp"
 #include "root_inputs.hpp"

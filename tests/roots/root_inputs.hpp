@@ -1,19 +1,9 @@
 // Helpers that the tests of roots share: rows of the table by name, inputs, and errors against wider numbers.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <span>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
+#include "../support/std.hpp"
 #include "../support/supported_paths.hpp"
 
 namespace raylanes::testing {

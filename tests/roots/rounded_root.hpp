@@ -1,10 +1,7 @@
 // Whether a root is the correctly rounded one, in integers alone; and doubles whose roots are hard to round.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
+#include "../support/std.hpp"
 
 namespace raylanes::testing {
 

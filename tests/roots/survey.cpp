@@ -1,10 +1,5 @@
 // Every method of roots on every path, judged over all floats (at level exhaustive) or blocks of them by
 // the judge of `raylanes roots`; and that this judge notices what is wrong.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-
 #include "../../bench/support/roots/double_survey.hpp"
 #include "../../bench/support/roots/root_survey.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

@@ -1,9 +1,4 @@
 // Trees over boxes with primitives of the caller's: alone and in scenes.
-#include <cmath>
-#include <set>
-#include <stdexcept>
-#include <utility>
-
 #include "boxed_cases.hpp"
 
 namespace raylanes::testing {

@@ -1,13 +1,6 @@
 // Trees over boxes with primitives of the caller's, and over spheres: primitives, rays, and what batches must find.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../../bench/support/scenes/vector3.hpp"

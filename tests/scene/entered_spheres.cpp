@@ -1,6 +1,4 @@
 // Spheres that rays enter and leave from points on them: of a skipped sphere the hit at the ray's begin is not there.
-#include <cmath>
-
 #include "../queries/query_trees.hpp"
 #include "boxed_cases.hpp"
 

@@ -1,8 +1,6 @@
 // Scenes in all modes against what they are to answer.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "scene_oracle.hpp"

@@ -1,10 +1,6 @@
 // Primitives of the caller's and spheres, of any bits: what the fuzz target of scenes asks of their trees.
 #pragma once
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/sphere_tree.hpp>

@@ -1,9 +1,5 @@
 // Rays of any bits through scenes of any parts in places of any bits, on any path and in any mode: the hits are as if
 // all instances were asked one after the other, nothing is written elsewhere.
-#include <memory>
-#include <sstream>
-#include <utility>
-
 #include <raylanes/paths.hpp>
 #include <raylanes/stretches.hpp>
 

@@ -1,8 +1,5 @@
 // The inverses of instances, which the scenes' oracle takes over, against rational numbers.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "../support/level.hpp"
 #include "../support/random_input.hpp"

@@ -1,9 +1,4 @@
 // Scenes of parts: hits are as if all instances were asked one after the other, whatever the top level does.
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <tuple>
-
 #include "triangle_parts.hpp"
 
 namespace raylanes::testing {

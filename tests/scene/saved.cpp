@@ -1,7 +1,4 @@
 // Scenes as bytes and back: the same hits, and nothing but a scene is taken for one.
-#include <algorithm>
-#include <cstring>
-#include <sstream>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

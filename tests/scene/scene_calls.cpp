@@ -1,8 +1,4 @@
 // How scenes are changed and asked: parts that move, views of rays and hits, masks, errors.
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "triangle_parts.hpp"

@@ -1,11 +1,6 @@
 // The expected results of a scene, by all instances one after the other.
 #pragma once
 
-#include <algorithm>
-#include <string>
-#include <tuple>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 #include <raylanes/scene.hpp>
 

@@ -1,8 +1,4 @@
 // Copies of scenes, and trees that scenes share with their other owners.
-#include <memory>
-#include <stdexcept>
-#include <utility>
-
 #include "../support/same_bytes.hpp"
 #include "boxed_cases.hpp"
 #include "triangle_parts.hpp"

@@ -1,6 +1,4 @@
 // Trees over spheres, alone and in scenes beside triangles and boxes.
-#include <cmath>
-
 #include "boxed_cases.hpp"
 
 namespace raylanes::testing {

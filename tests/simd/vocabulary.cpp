@@ -1,19 +1,5 @@
 // Every operation of the vocabulary on every path against plain scalar code, bit for bit.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <map>
-#include <memory>
-#include <set>
-#include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "../../bench/support/rulers/of_path.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/supported_paths.hpp"

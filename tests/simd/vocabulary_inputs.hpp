@@ -1,12 +1,7 @@
 // Inputs for the operations of the vocabulary.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <random>
-#include <vector>
 
 #include "../support/supported_paths.hpp"
 #include "vocabulary_reference.hpp"

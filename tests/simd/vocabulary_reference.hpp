@@ -1,16 +1,7 @@
 // The vocabulary's meaning in plain scalar code, operation by operation, on the bits of the operands.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <type_traits>
-#include <vector>
-
+#include "../support/std.hpp"
 #include "../support/system/fused.hpp"
 
 namespace raylanes::testing {

@@ -1,10 +1,4 @@
 // The nearest hit among spheres: the least distance at which the segment meets a surface.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <vector>
-
 #include "../support/same_bytes.hpp"
 #include "sphere_answers.hpp"
 

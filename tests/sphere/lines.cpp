@@ -1,10 +1,4 @@
 // The line test for spheres: decisions against rational arithmetic, outside its own bound.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "sphere_answers.hpp"
 
 namespace raylanes::testing {

@@ -1,6 +1,4 @@
 // Spheres over arrays, and the calls on them.
-#include <bit>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
 #include "../intervals/arrays.hpp"

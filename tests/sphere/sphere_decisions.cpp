@@ -1,11 +1,4 @@
 // Sphere tests on every path: decisions against rational arithmetic, distances in 256 bits, near and far.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "sphere_answers.hpp"
 
 namespace raylanes::testing {

@@ -1,9 +1,4 @@
 // The calls that only spheres have: what their options mean and what they refuse.
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "sphere_answers.hpp"
 

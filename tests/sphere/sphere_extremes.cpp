@@ -1,9 +1,4 @@
 // Sphere tests at the extremes: named cases, bad numbers, scales and mirrors.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "sphere_answers.hpp"
 
 namespace raylanes::testing {

@@ -1,8 +1,7 @@
 // A fault of emulated processors that the tests see for themselves and step around, aloud.
 #pragma once
 
-#include <cmath>
-#include <cstdio>
+#include "std.hpp"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>

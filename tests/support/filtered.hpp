@@ -1,14 +1,6 @@
 // Filters in every form of call: batches of records and of arrays, segments from a point, single rays.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <span>
-#include <type_traits>
-#include <vector>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "../traverse/reference/segment_to.hpp"
 #include "same_bytes.hpp"

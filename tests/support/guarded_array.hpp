@@ -1,16 +1,9 @@
 // An array that notices when a kernel touches what is not its own.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstring>
-#include <map>
-#include <memory>
 #include <new>
-#include <optional>
-#include <span>
-#include <vector>
 
+#include "std.hpp"
 #include "system/guard_pages.hpp"
 
 namespace raylanes::testing {

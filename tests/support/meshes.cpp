@@ -1,9 +1,5 @@
 #include "meshes.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <utility>
-
 #include "../../bench/support/scenes/shapes.hpp"
 #include "random_input.hpp"
 

@@ -1,11 +1,10 @@
 // Meshes that suites share, and what is made of meshes.
 #pragma once
 
-#include <cstdint>
-#include <type_traits>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
+
+#include "std.hpp"
 
 namespace raylanes::testing {
 

@@ -1,17 +1,13 @@
 // Calls that are expected to refuse: what they say, and that they do.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <exception>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include <raylanes/paths.hpp>
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/table/kernel_table.hpp"
+#include "std.hpp"
 
 namespace raylanes {
 

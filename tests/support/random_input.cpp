@@ -1,9 +1,5 @@
 #include "random_input.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace raylanes::testing {
 
 Float3 Random::point(float half, const Float3& centre) {

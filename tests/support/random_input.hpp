@@ -1,12 +1,6 @@
 // Rays, triangles and meshes for tests: seeded, the same on every machine.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 

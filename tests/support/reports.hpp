@@ -1,15 +1,11 @@
 // The shares that a call tells a Progress, and whether it does the same as without.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include <raylanes/progress.hpp>
+
+#include "std.hpp"
 
 namespace raylanes::testing {
 

@@ -1,10 +1,9 @@
 // Equality of bytes: of numbers and structs, and of what arrays hold.
 #pragma once
 
-#include <cstddef>
-#include <cstring>
 #include <ranges>
-#include <type_traits>
+
+#include "std.hpp"
 
 namespace raylanes::testing {
 

@@ -2,15 +2,7 @@
 // notices writes around it.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <deque>
-#include <limits>
-#include <span>
-#include <vector>
 
 #include <raylanes/boxes.hpp>
 #include <raylanes/spheres.hpp>

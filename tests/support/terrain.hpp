@@ -2,9 +2,6 @@
 // floor, and just beside that.
 #pragma once
 
-#include <cmath>
-#include <vector>
-
 #include "../../bench/support/scenes/shapes.hpp"
 #include "random_input.hpp"
 

@@ -1,8 +1,6 @@
 // Rays and the triangles they are aimed at.
 #pragma once
 
-#include <vector>
-
 #include "random_input.hpp"
 
 namespace raylanes::testing {

@@ -1,11 +1,6 @@
 // A test of the tables under test: on which path, in which grade.
 #pragma once
 
-#include <array>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/spheres.hpp>
@@ -15,6 +10,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
 #include "../../dispatch/table/triangles.hpp"
+#include "std.hpp"
 #include "supported_paths.hpp"
 
 namespace raylanes::testing {

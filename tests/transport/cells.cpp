@@ -1,11 +1,5 @@
 // Particles through cells that share their faces, aimed at corners and edges: none is lost, and none goes in circles,
 // if exits are taken from crossings(), as docs/crossings.md says.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <type_traits>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/numbers.hpp"

@@ -1,10 +1,5 @@
 // Histories of particles within a solid, aimed at its corners and edges, where they turn: none is lost and none stays
 // where it is, if each leg begins at a point that locate() finds inside, as docs/crossings.md says.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <type_traits>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/numbers.hpp"

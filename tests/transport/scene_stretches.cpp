@@ -1,8 +1,4 @@
 // Stretches of rays within the instances of scenes, compared with the tree of each instance and the ray in its space.
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include <raylanes/stretches.hpp>
 
 #include "../support/meshes.hpp"

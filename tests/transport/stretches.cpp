@@ -1,9 +1,6 @@
 // Stretches of rays within solids that touch, share faces and overlap, aimed at their edges: lengths by rational
 // numbers.
 #include <gmpxx.h>
-#include <gtest/gtest.h>
-
-#include <type_traits>
 
 #include <raylanes/stretches.hpp>
 

@@ -1,9 +1,5 @@
 // Coherent packets that share no point. Parallel, coming together, going apart, from near and far, with strangers
 // among them.
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"
 #include "reference/traced.hpp"

@@ -1,13 +1,5 @@
 // Calls with counters: the same answers, and counts that lie between the counts of two walks in double precision, by
 // boxes a little smaller and a little larger than the tree's.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,10 +1,4 @@
 // Trees with every test and in both grades: no leaks of closed meshes, and agreement with double precision.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
 #include "../../bench/support/oracles/double_triangle.hpp"
 #include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"

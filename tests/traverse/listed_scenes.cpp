@@ -1,14 +1,8 @@
 // Trees over real meshes against a brute force, byte for byte. The meshes are no part of the project: the
 // environment variable RAYLANES_SCENES names their directory, without it the tests are skipped.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <string>
 
 #include "../../accel/mesh/bounding_boxes.hpp"
 #include "../../bench/support/readers/mesh_reader.hpp"

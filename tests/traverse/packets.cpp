@@ -1,13 +1,5 @@
 // Packets: rays of one origin, in any order, with strangers among them; more than a packet takes, and so many
 // leaves that the rays of a packet are asked one by one.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "../../accel/batch/shared_points.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

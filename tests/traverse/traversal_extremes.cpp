@@ -1,12 +1,5 @@
 // Rays at the ends of what floats hold: nothing but the tree's own triangles is ever looked at, and what brute
 // force finds is found.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "../../accel/layout/bvh_arrays.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"

@@ -1,12 +1,4 @@
 // The rows of traversals called as TriangleTree calls them: what they ask for is enough, and they take no more.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstring>
-#include <vector>
-
 #include "../../accel/builders/builder_table.hpp"
 #include "../../accel/layout/bvh_arrays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

@@ -1,11 +1,4 @@
 // Scenes of any size, anywhere, and directions of any length: what overflows or is flushed loses no hit.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"

@@ -1,14 +1,6 @@
 // All kinds of trees over triangles: what holds for each is tested by one text.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <span>
-#include <sstream>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../doubles/double_cases.hpp"

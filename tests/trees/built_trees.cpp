@@ -1,11 +1,4 @@
 // Builds of any tree end, say how far they are, can be given up, and make empty trees of empty meshes.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
 #include "../../accel/layout/bvh_arrays.hpp"
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"

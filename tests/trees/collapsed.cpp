@@ -1,7 +1,5 @@
 // Refits that collapse triangles to segments and points, near and far: everything a tree says is what a tree that is
 // built from the same vertices says, byte for byte, and closest points are on the triangles that are left.
-#include <cmath>
-
 #include <raylanes/kdtree.hpp>
 #include <raylanes/scene.hpp>
 

@@ -1,11 +1,5 @@
 // Calls that are prepared once, and batches of few rays, have the bytes of calls with one ray, by any options, in every
 // kind of tree.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <utility>
-
 #include <raylanes/scene.hpp>
 
 #include "both_trees.hpp"

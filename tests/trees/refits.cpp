@@ -1,13 +1,5 @@
 // Trees that follow meshes in motion: hits of exact arithmetic over the moved mesh, byte for byte, whatever happens to
 // its triangles; and how much worse than new a tree says it is.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "refitted.hpp"
 

@@ -1,14 +1,6 @@
 // Trees of floats and of doubles for tests of refits, and all that queries say of them.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstring>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../../dispatch/table/numbers.hpp"
 #include "../doubles/both_numbers.hpp"

@@ -1,10 +1,7 @@
 // Queries that tell how far they are: the same bytes, shares that rise, what a report throws; and the sizes of parts.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <utility>
 
 #include <raylanes/closed_mesh.hpp>
 

@@ -1,11 +1,5 @@
 // Trees as bytes: what is loaded traces as what was saved did, and what is cut or damaged is refused.
-#include <gtest/gtest.h>
-
-#include <stdexcept>
 #include <streambuf>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <raylanes/scene.hpp>
 

@@ -1,13 +1,5 @@
 // Shadows of lights at any distance: segments begin at their points, in every tree, call and mode. Single rays from the
 // points judge batches, and rational numbers judge some of these rays.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>

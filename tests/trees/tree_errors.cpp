@@ -1,13 +1,4 @@
 // Meshes, batches, threads and paths that a tree of either kind refuses.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "../../dispatch/table/numbers.hpp"
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"

@@ -1,9 +1,5 @@
 // All triangle tests against exact arithmetic: right outside the derived bound of each, and how many cases that
 // leaves open; the canonical test byte for byte, and exact signs of the watertight one.
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "../traverse/reference/reference_tracer.hpp"

@@ -1,12 +1,4 @@
 // Tests by determinants on integers, where nothing rounds: the documented convention, to the bit.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_triangle.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"

@@ -1,13 +1,5 @@
 // All triangle tests on closed meshes, aimed at where triangles meet: the watertight ones leak nothing, the others what
 // they are known to.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "../../bench/support/rays/leak_targets.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../support/float_modes.hpp"

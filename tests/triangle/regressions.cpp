@@ -1,8 +1,4 @@
 // Rays that are known to have been answered wrongly, somewhere: inputs found by search, to the bit.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "../support/random_input.hpp"
 #include "../support/system/fused.hpp"
 #include "../traverse/reference/reference_tracer.hpp"

@@ -1,11 +1,5 @@
 // Changes that must not affect the results of a triangle test: powers of two, mirrors, order of lanes and of corners,
 // signs of zeros, length of the direction.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"

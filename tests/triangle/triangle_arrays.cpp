@@ -1,10 +1,4 @@
 // All triangle tests over arrays: any length, alignment and mask, and bad numbers in one lane.
-#include <gtest/gtest.h>
-
-#include <span>
-#include <string>
-#include <vector>
-
 #include "../../dispatch/table/triangles.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"

@@ -1,10 +1,5 @@
 // The values of triangle tests; which of them have the same bits, the first of equal hits, and what is computed of a
 // hit.
-#include <gtest/gtest.h>
-
-#include <span>
-#include <vector>
-
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"
 

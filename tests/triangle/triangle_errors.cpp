@@ -1,12 +1,4 @@
 // The calls that are refused, before anything is written, and the smallest that are accepted.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
 #include "../support/message_of.hpp"
 #include "judge/triangle_answers.hpp"
 

@@ -1,9 +1,4 @@
 // All triangle forms at the extremes: a table of named cases, exact edges and corners.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "../support/float_modes.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"

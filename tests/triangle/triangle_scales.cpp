@@ -1,12 +1,5 @@
 // All triangle tests in scenes of any size and place, with directions of any length, and on triangles of aspect 1e-4 …
 // 1e-7, aimed inside, straight and at grazing angles.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "../../bench/support/scenes/vector3.hpp"
 #include "../support/random_input.hpp"
 #include "judge/triangle_answers.hpp"

@@ -3,14 +3,8 @@
 #include <dlfcn.h>
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../contenders.hpp"
 #include "embree_layouts.hpp"

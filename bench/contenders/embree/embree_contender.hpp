@@ -2,13 +2,6 @@
 // contender stands beside every figure.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/types.hpp>

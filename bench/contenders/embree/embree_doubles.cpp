@@ -1,9 +1,5 @@
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "../rivals.hpp"
 #include "plain_scene.hpp"
 

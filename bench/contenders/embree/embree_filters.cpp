@@ -1,7 +1,5 @@
 #include <embree3/rtcore.h>
 
-#include <algorithm>
-
 #include "../rivals.hpp"
 #include "embree_layouts.hpp"
 #include "plain_scene.hpp"

@@ -4,19 +4,10 @@
 #include <embree3/rtcore.h>
 #include <emmintrin.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <span>
-#include <stdexcept>
-#include <string>
-
 #include <raylanes/types.hpp>
 
 #include "../../../dispatch/checked.hpp"
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 

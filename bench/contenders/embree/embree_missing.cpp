@@ -1,6 +1,4 @@
 // Built in place of embree_contender.cpp where Embree is not installed: asking for it is an error.
-#include <stdexcept>
-
 #include "../rivals.hpp"
 #include "embree_contender.hpp"
 

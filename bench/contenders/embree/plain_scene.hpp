@@ -5,12 +5,9 @@
 #include <embree3/rtcore.h>
 #include <xmmintrin.h>
 
-#include <cstring>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
+
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 

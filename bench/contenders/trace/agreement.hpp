@@ -1,9 +1,6 @@
 // Differences between Embree and us, and whether exact arithmetic excuses them.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "../../support/oracles/disagreement.hpp"
 #include "../../support/scenes/mesh_and_camera.hpp"
 #include "../contenders.hpp"

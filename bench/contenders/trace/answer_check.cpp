@@ -1,7 +1,5 @@
 #include "answer_check.hpp"
 
-#include <algorithm>
-
 #include "../scene_contenders.hpp"
 
 namespace raylanes::bench {

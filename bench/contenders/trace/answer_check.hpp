@@ -1,10 +1,6 @@
 // Contenders of one race with the rows they fill, and whether they answer a ray set right, before they are timed.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "../../support/oracles/disagreement.hpp"
 #include "../contenders.hpp"
 #include "agreement.hpp"

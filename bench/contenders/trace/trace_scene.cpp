@@ -1,8 +1,6 @@
 #include "trace_scene.hpp"
 
-#include <algorithm>
 #include <list>
-#include <memory>
 
 #include "../../report/output.hpp"
 #include "../../rows/tree_counts.hpp"

@@ -1,10 +1,6 @@
 // One scene: build, trace every ray set on every path and mode, compare, time.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../../rows/tree_counts.hpp"

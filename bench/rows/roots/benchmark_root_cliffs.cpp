@@ -2,12 +2,7 @@
 // the first-level cache to memory.
 #include <benchmark/benchmark.h>
 
-#include <array>
-#include <cmath>
 #include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <raylanes/roots.hpp>
 

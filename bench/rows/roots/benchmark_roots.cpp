@@ -2,11 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <random>
-#include <string>
 
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../../dispatch/table/roots.hpp"

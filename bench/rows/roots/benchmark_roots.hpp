@@ -7,14 +7,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cstddef>
-#include <functional>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/paths.hpp>
+
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 

@@ -3,12 +3,7 @@
 // RootSpeed's members.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "../../../dispatch/table/roots.hpp"
 #include "../../report/row_table.hpp"

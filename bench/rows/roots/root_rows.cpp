@@ -1,9 +1,5 @@
 #include "root_rows.hpp"
 
-#include <bit>
-#include <cmath>
-#include <cstdio>
-
 namespace raylanes::bench {
 namespace {
 

@@ -1,9 +1,6 @@
 // The rows of `raylanes roots`: accuracy, speed, and how they compare.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "../../support/roots/double_survey.hpp"
 #include "../../support/roots/root_survey.hpp"
 #include "root_ranks.hpp"

@@ -1,9 +1,5 @@
 #include "disagreement.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
 namespace raylanes::oracle {
 namespace {
 

@@ -1,9 +1,6 @@
 // Whether two tracers disagree about a ray, and whether rounding excuses it.
 #pragma once
 
-#include <span>
-#include <string>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 

@@ -3,11 +3,9 @@
 
 #include <gmpxx.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <raylanes/types.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::oracle {
 

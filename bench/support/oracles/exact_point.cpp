@@ -1,7 +1,5 @@
 #include "exact_point.hpp"
 
-#include <cmath>
-
 namespace raylanes::oracle {
 
 std::string fault_of_closest_point(const DoubleMesh& mesh, const Double3& point, const ClosestPointD& found) {

@@ -1,9 +1,6 @@
 // Point and triangle: the squared distance in exact rational arithmetic, and what is wrong with a closest point.
 #pragma once
 
-#include <algorithm>
-#include <string>
-
 #include "exact_rays.hpp"
 #include "rational_vectors.hpp"
 

@@ -2,11 +2,6 @@
 
 #include <gmpxx.h>
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "rational_vectors.hpp"
 
 namespace raylanes::oracle {

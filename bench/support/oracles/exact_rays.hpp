@@ -2,15 +2,10 @@
 // decides what rays certainly miss. Independent of the library.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../../dispatch/table/numbers.hpp"
+#include "../std.hpp"
 
 namespace raylanes::oracle {
 

@@ -1,9 +1,5 @@
 #include "exact_triangle.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "rational_vectors.hpp"
 
 namespace raylanes::oracle {

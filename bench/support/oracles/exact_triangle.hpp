@@ -3,10 +3,9 @@
 
 #include <gmpxx.h>
 
-#include <array>
-#include <optional>
-
 #include <raylanes/types.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::oracle {
 

@@ -3,8 +3,7 @@
 
 #include <gmpxx.h>
 
-#include <array>
-#include <cmath>
+#include "../std.hpp"
 
 namespace raylanes::oracle {
 

@@ -1,9 +1,5 @@
 #include "winding_sum.hpp"
 
-#include <array>
-#include <cmath>
-#include <numbers>
-
 #include "exact_rays.hpp"
 
 namespace raylanes::oracle {

@@ -1,17 +1,5 @@
 #include "heatmap.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <iterator>
-#include <numeric>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
-
 namespace raylanes::bench {
 namespace {
 

@@ -1,10 +1,7 @@
 // Pictures of the work that each pixel took: from dark violet, little, to yellow, much.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

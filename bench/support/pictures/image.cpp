@@ -2,12 +2,6 @@
 
 #include <png.h>
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-
 #include "../../report/exits.hpp"
 #include "../../report/whole_file.hpp"
 #include "../rays/ray_sets.hpp"

@@ -1,10 +1,7 @@
 // Pictures of scenes, and of slices of signed distances.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <span>
-#include <vector>
 
 #include <raylanes/types.hpp>
 

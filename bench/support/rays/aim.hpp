@@ -1,9 +1,6 @@
 // Random points, and rays aimed at such, for what is measured of the intersection tests.
 #pragma once
 
-#include <cstddef>
-#include <limits>
-
 #include <raylanes/types.hpp>
 
 #include "../scenes/splitmix.hpp"

@@ -1,15 +1,5 @@
 #include "ray_sets.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-#include <stdexcept>
-#include <string>
-#include <tuple>
-
 #include <raylanes/rays.hpp>
 
 #include "../../../dispatch/checked.hpp"

@@ -2,12 +2,6 @@
 // All are computed in double and rounded once. A ray set does not depend on the order of its pixels.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/types.hpp>
 
 #include "../scenes/mesh_and_camera.hpp"

@@ -1,10 +1,6 @@
 // Points and normals of a mesh where a ray hit it.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <utility>
-
 #include <raylanes/types.hpp>
 
 #include "../scenes/vector3.hpp"

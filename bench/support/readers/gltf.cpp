@@ -1,12 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <map>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "gltf_model.hpp"
 #include "mesh_formats.hpp"
 

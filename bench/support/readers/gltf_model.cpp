@@ -1,16 +1,6 @@
 #include <fstream>  // tiny_gltf forgets it where it may not open files itself
 
 #define TINYGLTF_IMPLEMENTATION
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <iterator>
-#include <limits>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "gltf_model.hpp"
 #include "printable.hpp"

@@ -2,12 +2,8 @@
 // read_mesh puts its name in front.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <iosfwd>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "mesh_reader.hpp"
 

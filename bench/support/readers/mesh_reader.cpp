@@ -1,13 +1,7 @@
 #include "mesh_reader.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cctype>
 #include <fstream>
-#include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "mesh_formats.hpp"
 #include "printable.hpp"

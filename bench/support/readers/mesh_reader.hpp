@@ -1,12 +1,12 @@
 // Reads the triangles of a mesh file.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <vector>
 
 #include <raylanes/mesh.hpp>
 #include <raylanes/scene.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,10 +1,5 @@
-#include <algorithm>
 #include <charconv>
 #include <istream>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "mesh_formats.hpp"
 #include "printable.hpp"

@@ -1,15 +1,7 @@
 #include "ply_header.hpp"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <istream>
-#include <span>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "printable.hpp"
 

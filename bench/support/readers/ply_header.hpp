@@ -1,10 +1,9 @@
 // The header of a PLY file (G. Turk, "The PLY Polygon File Format", 1994).
 #pragma once
 
-#include <cstddef>
 #include <iosfwd>
-#include <string>
-#include <vector>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

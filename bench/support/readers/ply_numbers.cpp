@@ -1,9 +1,5 @@
 #include <charconv>
-#include <cstdint>
 #include <istream>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 
 #include "ply_header.hpp"
 #include "printable.hpp"

@@ -4,17 +4,7 @@
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <cstring>
 #include <istream>
-#include <iterator>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mesh_formats.hpp"
 #include "ply_header.hpp"

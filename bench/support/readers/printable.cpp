@@ -1,7 +1,5 @@
 #include "printable.hpp"
 
-#include <cstdint>
-
 namespace raylanes::bench {
 namespace {
 

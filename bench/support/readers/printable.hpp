@@ -1,9 +1,7 @@
 // Text of files and command lines, made fit for a terminal.
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <string_view>
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

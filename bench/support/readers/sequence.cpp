@@ -1,10 +1,5 @@
 #include "sequence.hpp"
 
-#include <algorithm>
-#include <cstring>
-#include <span>
-#include <stdexcept>
-
 #include "../../contenders/embree/embree_contender.hpp"
 #include "../../contenders/workload.hpp"
 #include "../../report/exits.hpp"

@@ -1,14 +1,6 @@
 // Sequences of frames: trees that follow them, and what that takes.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
 #include "../rulers/measure.hpp"

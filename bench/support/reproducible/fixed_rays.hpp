@@ -2,8 +2,6 @@
 // stay.
 #pragma once
 
-#include <cstddef>
-
 #include <raylanes/triangles.hpp>
 
 #include "../rays/aim.hpp"

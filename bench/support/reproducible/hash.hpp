@@ -1,12 +1,7 @@
 // Hashes of answers, by their bits.
 #pragma once
 
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <span>
-#include <string>
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,14 +1,9 @@
 // One constant a built-in scene: the hash that the answers have on every machine. docs/guide/versions.md shows them.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/paths.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

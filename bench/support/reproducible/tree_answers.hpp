@@ -1,9 +1,6 @@
 // Hashes of the bits of trees' answers to fixed rays: the same on every ISA path.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/paths.hpp>
 

@@ -1,12 +1,6 @@
 #include "double_survey.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
 #include <random>
-#include <utility>
 
 #include "../../../dispatch/table/kernel_table.hpp"
 

@@ -1,14 +1,10 @@
 // Roots of doubles judged over a sample, by pairs of extended numbers: nobody can try them all.
 #pragma once
 
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../../../dispatch/table/roots.hpp"
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,11 +1,5 @@
 #include "root_judge.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
 // Compiled twice, for processors with and without AVX2; the results are the same. But not with ThreadSanitizer: g++
 // has what chooses between the two call it while the program is loaded, before it is ready.
 #if defined(__x86_64__) && defined(__ELF__) && !defined(__SANITIZE_THREAD__)

@@ -1,8 +1,6 @@
 // Judges what a root gives for a block of neighbouring floats: errors, order, and a hash of all bits.
 #pragma once
 
-#include <vector>
-
 #include "root_survey.hpp"
 
 namespace raylanes::bench {

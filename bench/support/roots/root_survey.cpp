@@ -1,11 +1,6 @@
 #include "root_survey.hpp"
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
-#include <cstring>
-#include <memory>
 #include <mutex>
 
 #include "../../../accel/batch/in_parallel.hpp"

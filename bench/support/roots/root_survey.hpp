@@ -1,16 +1,11 @@
 // Roots judged over every float.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/paths.hpp>
 
 #include "../../../dispatch/table/roots.hpp"
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

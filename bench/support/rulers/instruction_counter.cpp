@@ -6,8 +6,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
-#include <iterator>
 
 namespace raylanes::bench {
 namespace {

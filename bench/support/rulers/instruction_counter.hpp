@@ -1,9 +1,7 @@
 // The number of instructions that a loop executes.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <optional>
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

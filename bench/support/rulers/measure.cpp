@@ -1,12 +1,7 @@
 #include "measure.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
-#include <numeric>
 #include <random>
-#include <utility>
 
 namespace raylanes::bench {
 namespace {

@@ -1,9 +1,7 @@
 // Timing that survives a noisy machine: contenders take turns, and are compared round by round.
 #pragma once
 
-#include <functional>
-#include <span>
-#include <vector>
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <cstdio>
-
 #include "../readers/printable.hpp"
 
 namespace raylanes::bench {

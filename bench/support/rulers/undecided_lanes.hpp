@@ -1,12 +1,11 @@
 // How often the exact test's floats, and then its doubles, leave a lane undecided.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/triangles.hpp>
 #include <raylanes/types.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

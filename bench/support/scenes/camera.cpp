@@ -1,11 +1,6 @@
 // How large a mesh is, and from where all of it is seen.
 #include "camera.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 namespace raylanes::bench {
 
 Box bounds_of(const Mesh& mesh) {

@@ -1,8 +1,5 @@
 #include "damage.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "mesh_and_camera.hpp"
 #include "splitmix.hpp"
 

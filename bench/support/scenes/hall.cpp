@@ -1,6 +1,3 @@
-#include <cmath>
-#include <numbers>
-
 #include "procedural.hpp"
 #include "shapes.hpp"
 

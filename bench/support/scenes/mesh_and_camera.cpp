@@ -1,13 +1,8 @@
 #include "mesh_and_camera.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <stdexcept>
-#include <vector>
 
 #include "../readers/mesh_reader.hpp"
 #include "../readers/printable.hpp"

@@ -1,11 +1,6 @@
 // The input of a picture or a measurement: triangles and a camera.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 
 #include "../../../accel/mesh/bounding_boxes.hpp"

@@ -1,9 +1,5 @@
 #include "parts.hpp"
 
-#include <algorithm>
-#include <cstring>
-#include <numeric>
-
 namespace raylanes::bench {
 namespace {
 

@@ -1,10 +1,6 @@
 // A mesh cut into parts, as most scenes consist of many meshes.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "../readers/mesh_reader.hpp"
 
 namespace raylanes::bench {

@@ -1,11 +1,5 @@
 #include "procedural.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 #include "../readers/printable.hpp"
 #include "shapes.hpp"
 #include "splitmix.hpp"

@@ -1,10 +1,6 @@
 // Built-in scenes, which need no file.
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "mesh_and_camera.hpp"
 
 namespace raylanes::bench {

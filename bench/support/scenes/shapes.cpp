@@ -1,8 +1,5 @@
 #include "shapes.hpp"
 
-#include <numbers>
-#include <vector>
-
 #include "subdivision.hpp"
 
 namespace raylanes::bench {

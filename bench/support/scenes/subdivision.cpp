@@ -1,8 +1,5 @@
 #include "subdivision.hpp"
 
-#include <stdexcept>
-#include <string>
-
 namespace raylanes::bench {
 
 void subdivide(Mesh& mesh, int times) {

@@ -1,13 +1,9 @@
 // Meshes cut into finer ones.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,10 +1,9 @@
 // Vectors of double precision for scenes, ray sets and pictures, none of which is timed.
 #pragma once
 
-#include <array>
-#include <cmath>
-
 #include <raylanes/mesh.hpp>
+
+#include "../std.hpp"
 
 namespace raylanes::bench {
 

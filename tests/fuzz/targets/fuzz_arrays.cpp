@@ -1,11 +1,7 @@
 // Every triangle, box and sphere test over arrays, and prepared rays, on any path against the scalar one: the
 // same bits in the reproducible grade (without FTZ and DAZ: with them the tests promise no bits); nothing is
 // read or written outside the arrays, nor where the mask leaves an element out.
-#include <bit>
 #include <deque>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include <raylanes/boxes.hpp>
 #include <raylanes/prepared_ray.hpp>

@@ -1,7 +1,5 @@
 // Every root on any path against the scalar one, and calls that take short arrays inline: same bits in the
 // reproducible methods, and nothing is read or written outside the arrays.
-#include <string>
-
 #include <raylanes/roots.hpp>
 
 #include "../../../dispatch/hardest_roots.hpp"

@@ -2,14 +2,6 @@
 // are traced in any mode, test and grade, counted or not, with and without FTZ and DAZ. There is no fault, nothing
 // outside the outputs, and hits say what hits may say. The exact test has the bytes of exact arithmetic, the watertight
 // one of the reproducible grade the bytes of a brute force, each but for what its Truth leaves out.
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <span>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../../../dispatch/table/kernel_table.hpp"

@@ -1,12 +1,6 @@
 // Trees as bytes that were damaged, with and without a checksum that covers it up: an error of one line, or a tree that
 // can be traced and refitted without a fault. And trees of any finite mesh, refitted to another: the hits of a tree
 // built over that.
-#include <algorithm>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 

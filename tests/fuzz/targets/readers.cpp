@@ -3,11 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <filesystem>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../../../bench/support/readers/mesh_reader.hpp"
 #include "../../../bench/tests/temporary_folder.hpp"

@@ -4,9 +4,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstring>
-#include <map>
-#include <sstream>
 
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/closed_mesh.hpp>

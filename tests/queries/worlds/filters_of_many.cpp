@@ -1,9 +1,5 @@
 // Filters of batches large enough for lists of hits, on rays through many layers: which hits are kept, and the order in
 // which a filter is asked.
-#include <algorithm>
-#include <array>
-#include <limits>
-
 #include <raylanes/scene.hpp>
 
 #include "../../support/filtered.hpp"

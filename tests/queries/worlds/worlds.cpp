@@ -1,7 +1,5 @@
 #include "worlds.hpp"
 
-#include <cmath>
-
 #include "../../oracles/passage_oracle.hpp"
 #include "../../support/terrain.hpp"
 

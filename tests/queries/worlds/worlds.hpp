@@ -1,9 +1,6 @@
 // Meshes of floats and of doubles, each with rays where queries are hardest.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "../../doubles/both_numbers.hpp"
 #include "../query_trees.hpp"
 

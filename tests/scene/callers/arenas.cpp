@@ -1,5 +1,4 @@
 // Calls within task arenas of oneTBB, which spreads the work of this build.
-#include <gtest/gtest.h>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 

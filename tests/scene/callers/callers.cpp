@@ -1,10 +1,6 @@
 // Situations around calls: many threads of their own, and other roundings.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cfenv>
 #include <thread>
-#include <vector>
 
 #include "../../support/supported_paths.hpp"
 #include "questions.hpp"

@@ -1,17 +1,11 @@
 // Calls in child processes: after fork(), and with too little memory.
-#include <gtest/gtest.h>
 #include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
-#include <functional>
 #include <new>
-#include <sstream>
-#include <stdexcept>
-#include <vector>
 
 #include "questions.hpp"
 

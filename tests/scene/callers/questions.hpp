@@ -1,8 +1,6 @@
 // Rays at a tree and a scene whose hits are known.
 #pragma once
 
-#include <vector>
-
 #include <raylanes/scene.hpp>
 
 #include "../../support/level.hpp"

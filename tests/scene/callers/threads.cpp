@@ -1,12 +1,7 @@
 // Work spread over threads, whatever spreads it: each element once, exceptions, calls within calls.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "../../../accel/batch/in_parallel.hpp"
 #include "../../support/message_of.hpp"

@@ -1,5 +1,4 @@
 // Meshes that are added as vertices and triangles: the hits of their trees, which are built when they are first needed.
-#include <sstream>
 #include <thread>
 
 #include <raylanes/stretches.hpp>

@@ -1,7 +1,6 @@
 // Meshes that stand where they were made are traced as one tree: the hits are as if each instance were asked by itself,
 // whatever joins that tree and leaves it.
 #include <atomic>
-#include <cmath>
 #include <thread>
 
 #include "../expect_queries.hpp"

@@ -1,8 +1,6 @@
 // Scenes and rays on a lattice, where ties in t, edges and vertices are many.
 #pragma once
 
-#include <vector>
-
 #include "../../support/meshes.hpp"
 #include "../../support/random_input.hpp"
 #include "../scene_oracle.hpp"

@@ -1,7 +1,4 @@
 // Next hits and filters of spheres and of primitives of the caller's, alone and in scenes beside triangles.
-#include <algorithm>
-#include <cmath>
-
 #include "../../oracles/peeled.hpp"
 #include "../../support/filtered.hpp"
 #include "../boxed_cases.hpp"

@@ -1,10 +1,4 @@
 // Lists of hits and crossings in scenes, compared with the lists of each instance's tree and the ray in its space.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <stdexcept>
-#include <tuple>
-
 #include "../../support/filtered.hpp"
 #include "../../support/same_bytes.hpp"
 #include "../../support/supported_paths.hpp"

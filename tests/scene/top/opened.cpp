@@ -1,6 +1,4 @@
 // Large instances that overlap are opened: the top level stands on their nodes.
-#include <map>
-
 #include "../../../accel/queries/traced_tree.hpp"
 #include "../../../accel/scene/scene_parts.hpp"
 #include "../triangle_parts.hpp"

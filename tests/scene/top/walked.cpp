@@ -1,7 +1,5 @@
 // Calls with one ray walk through the top level into instances: hits are as if each instance were asked by itself,
 // for any ray, together with the common tree, in copies, and whatever changes.
-#include <optional>
-
 #include "../triangle_parts.hpp"
 
 namespace raylanes::testing {

@@ -1,8 +1,5 @@
 // Rays along axes and in the planes of a mesh, against rational numbers: weights that are exactly zero, and triangles
 // that a ray cannot hit because it stays beside them.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
 
 #include "../../../bench/support/oracles/exact_rays.hpp"

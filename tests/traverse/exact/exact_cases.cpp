@@ -1,8 +1,5 @@
 #include "exact_cases.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "../../support/triangle_scenes.hpp"
 
 namespace raylanes::testing {

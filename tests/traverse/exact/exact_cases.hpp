@@ -1,9 +1,6 @@
 // Meshes and rays where the decisions of floats are hardest, by what makes them hard. Seeded by the caller.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 

@@ -1,14 +1,5 @@
 // The exact test where floats are hardest, against rational numbers: over arrays and in trees, on every path, in both
 // grades and every mode, with and without FTZ and DAZ. The first failure is all that is printed.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "../../../accel/batch/shared_points.hpp"
 #include "../../../bench/support/oracles/exact_rays.hpp"
 #include "../../support/float_modes.hpp"

@@ -1,7 +1,5 @@
 // The filter of streams leaves little to doubles and integers: for rays that leave large walls nearly nothing, at any
 // scale.
-#include <gtest/gtest.h>
-
 #include "../../support/random_input.hpp"
 #include "../../support/supported_paths.hpp"
 #include "../reference/traced.hpp"

@@ -1,9 +1,5 @@
 #include "reference_tracer.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "../../support/random_input.hpp"
 #include "../../support/system/fused.hpp"
 

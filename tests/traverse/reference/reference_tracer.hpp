@@ -2,13 +2,10 @@
 // kernels: what the reproducible grade must equal byte for byte.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
+
+#include "../../support/std.hpp"
 
 namespace raylanes::testing {
 

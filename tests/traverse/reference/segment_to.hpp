@@ -1,12 +1,10 @@
 // The ray of a shadow.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include <raylanes/rays.hpp>
 
 #include "../../../dispatch/table/numbers.hpp"
+#include "../../support/std.hpp"
 
 namespace raylanes::testing {
 

@@ -1,9 +1,5 @@
 #include "traced.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "../../../bench/support/oracles/exact_rays.hpp"
 #include "../../support/float_modes.hpp"
 #include "../../support/same_bytes.hpp"

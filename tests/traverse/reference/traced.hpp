@@ -1,11 +1,9 @@
 // Tracing a tree in every way there is, and holding the hits to a brute force.
 #pragma once
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
+
+#include "../../support/std.hpp"
 
 namespace raylanes::testing {
 

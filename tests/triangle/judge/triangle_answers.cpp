@@ -1,7 +1,5 @@
 #include "triangle_answers.hpp"
 
-#include <gtest/gtest.h>
-
 #include "../../support/same_bytes.hpp"
 
 namespace raylanes::testing {

@@ -1,11 +1,6 @@
 // Every triangle test on rays and triangles: one result per pair, by all ways to ask at once, which must agree.
 #pragma once
 
-#include <array>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <raylanes/triangles.hpp>
 
 #include "../../../dispatch/table/rows.hpp"

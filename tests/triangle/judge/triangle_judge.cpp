@@ -1,9 +1,5 @@
 #include "triangle_judge.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "../../../bench/support/scenes/vector3.hpp"
 
 namespace raylanes::testing {

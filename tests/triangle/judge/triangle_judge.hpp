@@ -1,10 +1,6 @@
 // The result that each triangle test must return, by exact arithmetic and the derived bound of that test's rounding.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-
 #include <raylanes/triangles.hpp>
 
 #include "../../../bench/support/oracles/exact_triangle.hpp"
