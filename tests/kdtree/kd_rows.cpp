@@ -10,18 +10,6 @@
 namespace raylanes::testing {
 namespace {
 
-TEST(KdRows, offer_both_queries_and_ask_for_nothing) {
-  for (const Path& path : paths())
-    for (const bool counted : {false, true}) {
-      const TraversalRow& row = counted ? kernels_of(path).kdtree.counted : kernels_of(path).kdtree.plain;
-      const bool offered = !counted || has_counters();
-      EXPECT_TRUE((row.closest != nullptr) == offered && (row.any != nullptr) == offered) << path.name;
-      if (offered) {
-        EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
-      }
-    }
-}
-
 // Planes at rising z, each with a leaf below it and the next one above, all leaves of the one triangle: for a ray from
 // above all leaves but the highest wait.
 struct Chain {

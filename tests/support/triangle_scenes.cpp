@@ -10,12 +10,6 @@ void TriangleScene::scale(float factor) {
       for (float& x : corner) x *= factor;
 }
 
-void TriangleScene::mirror(std::size_t axis) {
-  for (Ray& each : rays) each.origin[axis] = -each.origin[axis], each.direction[axis] = -each.direction[axis];
-  for (Triangle& each : triangles)
-    for (auto& corner : each.corner) corner[axis] = -corner[axis];
-}
-
 namespace {
 
 // In barycentric weight: 16 times what a test in floats can resolve at the size of these triangles.

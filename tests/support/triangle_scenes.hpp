@@ -15,7 +15,6 @@ struct TriangleScene {
   const Ray& ray(std::size_t pair) const { return rays[pair % rays.size()]; }
   const Triangle& triangle(std::size_t pair) const { return triangles[pair / rays.size()]; }
   void scale(float factor);
-  void mirror(std::size_t axis);
 };
 
 // At what rays are aimed. off_edge is a fixed step off an edge, in or out; beside_a_tiny_one passes a

@@ -9,8 +9,6 @@
 namespace raylanes::testing {
 namespace {
 
-constexpr auto single = static_cast<std::size_t>(TraversalMode::single);
-
 std::array<const TraversalKernels*, 2> both_kernels(const Path& path) {
   return {&kernels_of(path).traversal, &kernels_of(path).counted};
 }
@@ -22,27 +20,6 @@ std::vector<TraversalRow> rows_of(const Path& path, TriangleTest test) {
       for (const TraversalRow& row : mode.row[static_cast<std::size_t>(test)])
         if (row.closest != nullptr) rows.push_back(row);
   return rows;
-}
-
-TEST(TraversalRows, single_rays_offer_every_test_of_trees_and_ask_for_nothing) {
-  for (const Path& path : paths())
-    for (std::size_t test = 0; test < std::size(triangle_tests); ++test)
-      for (const TraversalRow& row : kernels_of(path).traversal.mode[single].row[test]) {
-        const bool offered = triangle_tests[test].serves_trees;
-        EXPECT_EQ(row.closest != nullptr, offered) << path.name;
-        EXPECT_EQ(row.any != nullptr, offered) << path.name;
-        if (!offered) continue;
-        EXPECT_EQ(row.scratch_bytes(max_rays_of_a_call), 0u) << path.name;
-      }
-}
-
-TEST(TraversalRows, a_mode_offers_both_queries_of_a_test_or_neither) {
-  for (const Path& path : paths())
-    for (const TraversalKernels* kernels : both_kernels(path))
-      for (const TraversalRows& rows : kernels->mode)
-        for (const auto& grades : rows.row)
-          for (const TraversalRow& row : grades)
-            EXPECT_EQ(row.closest == nullptr, row.any == nullptr) << path.name;
 }
 
 TEST(TraversalRows, what_is_offered_is_counted_in_the_reproducible_grade_with_the_same_scratch) {

@@ -10,27 +10,6 @@
 namespace raylanes::testing {
 namespace {
 
-TEST(AlongAxes, hits_of_every_mode_and_tree) {
-  const Mesh mesh = terrain_over_a_floor();
-  const std::vector<Ray> rays = rays_along_axes(mesh, by_level(240, 360, 2400), 62);
-  const std::vector<Hit> hits = oracle::nearest_hits(mesh, rays);
-  EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return !!hit; }),
-            static_cast<std::ptrdiff_t>(rays.size() / 3));
-  for (const FloatMode mode : float_modes) {
-    const FloatModeScope scope(mode);
-    const Bvh bvh(mesh);
-    expect_hits(bvh, rays, hits);
-    expect_hits(bvh, repeated(rays), repeated(hits));
-    expect_hits(KdTree(mesh), rays, hits);
-    for (const Path* path : supported_paths())
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Hit hit = bvh.closest(rays[i], {.path = path});
-        ASSERT_TRUE(same_bytes(hit, hits[i])) << path->name << " ray " << i;
-        ASSERT_EQ(bvh.occluded(rays[i], {.path = path}), static_cast<bool>(hits[i])) << "ray " << i;
-      }
-  }
-}
-
 // A floor with walls across it. Rays in its plane meet the walls alone, and do not look at the floor row by row.
 TEST(AlongAxes, lists_of_many_rays_in_a_floor) {
   constexpr std::size_t cells = 60, walls = 12;
