@@ -60,29 +60,6 @@ TYPED_TEST(Chosen, skip_is_a_view_of_any_records) {
   expect_found("bytes", PrimitiveView(odd.data() + 1, rays.size(), 7));
 }
 
-// Runs that share an origin are traced apart from the rays between them.
-TYPED_TEST(Chosen, skip_is_of_the_ray_in_every_run) {
-  using T = TypeParam;
-  const Mesh mesh = triangle_soup(by_level(300), 0.5f, 174);
-  auto rays = rays_of<T>(aimed_rays(mesh, 600, 2, 175));
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (i / 150 % 2 == 1) rays[i].origin = rays[i / 150 * 150].origin;
-  const auto tree = tree_of<T>(mesh_of<T>(mesh));
-  std::vector<HitOf<T>> first(rays.size()), found(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
-  tree.closest(rays, first);
-  tree.closest(rays, found, {.skip = first});
-  tree.occluded(rays, occluded, {.skip = first});
-  std::size_t others = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const HitOf<T> alone = tree.closest(rays[i], {.skip = first[i].primitive});
-    ASSERT_TRUE(same_bytes(found[i], alone)) << i;
-    ASSERT_EQ(occluded[i], alone ? 1 : 0) << i;
-    others += first[i] && alone ? 1 : 0;
-  }
-  EXPECT_GT(others, 50u);
-}
-
 TYPED_TEST(Chosen, others_are_refused) {
   using T = TypeParam;
   const auto& tree = this->box;

@@ -90,30 +90,5 @@ TEST(Instance, has_no_inverse_where_rational_numbers_have_none) {
   }
 }
 
-// The inverse by rational numbers, within what bounds_of takes it for.
-TEST(Instance, is_inverted_as_well_as_it_says) {
-  Random random(84);
-  for (std::size_t i = 0; i < by_level(600); ++i) {
-    Transform transform = random_transform(random, 1, 10);
-    if (i % 3 == 0)
-      for (std::size_t k = 0; k < 3; ++k)
-        transform.row[2][k] = transform.row[0][k] - transform.row[1][k] +
-                              random.number(-1, 1) * std::ldexp(1.0f, -static_cast<int>(i % 20));
-    const Instance instance(0, transform, 1);
-    if (instance.doubt < 0) continue;
-    for (std::size_t row = 0; row < 3; ++row)
-      for (std::size_t column = 0; column < 3; ++column) {
-        // (R·A − 1), as a share of |R|·|A|.
-        mpq_class sum = row == column ? -1 : 0, size = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const mpq_class product =
-              mpq_class(instance.inverse[3 * k + row]) * mpq_class(transform.row[k][column]);
-          sum += product, size += abs(product);
-        }
-        ASSERT_LE(abs(sum), size * mpq_class(instance.doubt)) << i;
-      }
-  }
-}
-
 }  // namespace
 }  // namespace raylanes::testing

@@ -4,17 +4,6 @@
 namespace raylanes::testing {
 namespace {
 
-TEST(Scene, has_the_hits_of_all_instances) {
-  Random random(72);
-  for (const auto& [instances, size, shift] :
-       {std::tuple{1, 1.0f, 1.0f}, {2, 1.0f, 2.0f}, {70, 1.0f, 8.0f}}) {
-    const TriangleParts parts = random_parts(static_cast<std::size_t>(instances), size, shift, random);
-    const std::vector<Ray> rays = rays_to_instances(parts.scene, by_level(2400), 12, random);
-    expect_all(parts, rays, ~0u, rays.size() / 20);
-    expect_all(parts, rays, 5u);
-  }
-}
-
 TEST(Scene, decides_by_exact_arithmetic_on_the_ray_of_an_instance) {
   Random random(73);
   const TriangleParts parts = random_parts(9, 1, 3, random);
