@@ -75,11 +75,20 @@ TEST(DoubleCalls, rays_that_are_none_miss) {
       *numbers[number] = value;
       const bool is_fine = (number < 3 && value == 0) || (number == 3 && (value == 0 || value == -inf)) ||
                            (number > 3 && number < 6 && value == 0) || (number == 7 && value == inf);
-      if (is_fine && number > 0) continue;
-      if (!is_fine) {
-        EXPECT_FALSE(sample.tree.closest(ray)) << number << ' ' << value;
-        EXPECT_FALSE(sample.tree.occluded(ray)) << number << ' ' << value;
-        EXPECT_TRUE(sample.tree.all_hits(std::span(&ray, 1)).items.empty());
+      if (is_fine) continue;
+      SCOPED_TRACE(::testing::Message() << number << ' ' << value);
+      EXPECT_FALSE(sample.tree.closest(ray));
+      EXPECT_FALSE(sample.tree.occluded(ray));
+      EXPECT_TRUE(sample.tree.all_hits(std::span(&ray, 1)).items.empty());
+      // Among rays from a point that hit the mesh.
+      std::vector<RayD> rays(100, good);
+      for (std::size_t i = 1; i < rays.size(); i += 3) rays[i] = ray;
+      std::vector<HitD> hits(rays.size());
+      std::vector<std::uint8_t> occluded(rays.size());
+      for (const Path* path : paths_with_own_queries()) {
+        sample.tree.closest(rays, hits, {.path = path}), sample.tree.occluded(rays, occluded, {.path = path});
+        for (std::size_t i = 0; i < rays.size(); ++i)
+          ASSERT_TRUE(static_cast<bool>(hits[i]) == (i % 3 != 1) && occluded[i] == (i % 3 != 1 ? 1 : 0)) << i;
       }
     }
 }

@@ -65,30 +65,6 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   }
 }
 
-// Among rays from a point that hit the mesh.
-TEST(DoubleRays, from_a_point_without_an_end_or_a_direction_miss) {
-  constexpr double nothing = std::numeric_limits<double>::quiet_NaN(), far = HUGE_VAL;
-  const RayD odd[] = {{{0, 0, 3}, 0, {0, 0, -1}, nothing}, {{0, 0, 3}, nothing, {0, 0, -1}, far},
-                      {{0, 0, 3}, far, {0, 0, -1}, far},   {{0, 0, 3}, 0, {nothing, 0, -1}, far},
-                      {{0, 0, 3}, 0, {0, far, -1}, far},   {{0, 0, 3}, 0, {0, 0, 0}, far},
-                      {{0, 0, 3}, 4, {0, 0, -1}, 1},       {{0, nothing, 3}, 0, {0, 0, -1}, far}};
-  const std::vector<Double3> corners{{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
-  const std::vector<Index3> triangles{{0, 1, 2}};
-  const BvhD tree(corners, triangles);
-  for (const Path* path : paths_with_own_queries())
-    for (const RayD& ray : odd) {
-      std::vector<RayD> rays(100, RayD{{0, 0, 3}, 0, {0, 0, -1}, far});
-      for (std::size_t i = 1; i < rays.size(); i += 3) rays[i] = ray;
-      std::vector<HitD> hits(rays.size());
-      std::vector<std::uint8_t> occluded(rays.size());
-      tree.closest(rays, hits, {.path = path}), tree.occluded(rays, occluded, {.path = path});
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_EQ(static_cast<bool>(hits[i]), i % 3 != 1) << path->name << ' ' << text_of(rays[i]);
-        ASSERT_EQ(occluded[i], i % 3 != 1 ? 1 : 0) << path->name << ' ' << text_of(rays[i]);
-      }
-    }
-}
-
 // By the room that it takes: of 3000 triangles a ray looks for the nearest few only.
 TEST(DoubleLists, of_a_few_hits_end_the_search) {
   const DoubleMesh mesh = moved(stack_of(3000), 1, {0, 0, 0});
