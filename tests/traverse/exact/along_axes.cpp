@@ -3,8 +3,8 @@
 #include <random>
 
 #include "../../../bench/support/oracles/exact_rays.hpp"
+#include "../../../bench/support/scenes/shapes.hpp"
 #include "../../queries/query_trees.hpp"
-#include "../../support/terrain.hpp"
 #include "../reference/traced.hpp"
 
 namespace raylanes::testing {
