@@ -78,4 +78,14 @@ inline TriangleParts random_parts(std::size_t instances, float size, float shift
   return parts;
 }
 
+// Cubes of side 1 in a row, with gaps of 1, and the ray that goes down cube i.
+inline Mesh cube_in_row(std::uint32_t i) {
+  Mesh mesh = cube(0, 1);
+  for (Float3& vertex : mesh.vertices) vertex[0] += 2 * static_cast<float>(i);
+  return mesh;
+}
+inline Ray ray_at_cube(std::uint32_t i) {
+  return make_ray({2 * static_cast<float>(i) + 0.375f, 0.25f, -5}, {0, 0, 1});
+}
+
 }  // namespace raylanes::testing

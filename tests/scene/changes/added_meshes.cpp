@@ -8,18 +8,10 @@
 namespace raylanes::testing {
 namespace {
 
-Mesh cube_at(float x) {
-  Mesh mesh = cube(0, 1);
-  for (Float3& vertex : mesh.vertices) vertex[0] += x;
-  return mesh;
-}
 Scene cubes(std::uint32_t count) {
   Scene scene;
-  for (std::uint32_t i = 0; i < count; ++i) scene.place(scene.add(cube_at(2 * static_cast<float>(i))));
+  for (std::uint32_t i = 0; i < count; ++i) scene.place(scene.add(cube_in_row(i)));
   return scene;
-}
-Ray ray_at_cube(std::uint32_t i) {
-  return make_ray({2 * static_cast<float>(i) + 0.375f, 0.25f, -5}, {0, 0, 1});
 }
 void expect_cubes(const Scene& scene, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -38,13 +30,13 @@ TEST(AddedMeshes, have_a_tree_from_when_it_is_needed) {
   EXPECT_EQ(scene.report().meshes_without_tree, 20u);
   scene.set_moving(3), scene.update();  // update() builds it
   EXPECT_EQ(scene.report().meshes_without_tree, 19u);
-  scene.refit(4, cube_at(8).vertices, cube_at(8).triangles);
+  scene.refit(4, cube_in_row(4).vertices, cube_in_row(4).triangles);
   EXPECT_EQ(scene.report().meshes_without_tree, 19u);
   scene.update();
   EXPECT_EQ(scene.report().meshes_without_tree, 18u);
   EXPECT_EQ(scene.tree(5)->bounds().lo[0], 10.0f);
   EXPECT_EQ(scene.report().meshes_without_tree, 17u);
-  scene.refit(5, cube_at(10).vertices, cube_at(10).triangles), scene.update();  // the tree is refitted
+  scene.refit(5, cube_in_row(5).vertices, cube_in_row(5).triangles), scene.update();  // the tree is refitted
   EXPECT_EQ(scene.report().meshes_without_tree, 17u);
   expect_cubes(scene, 20);
   scene.set_mask(6, 1);  // it is traced by itself

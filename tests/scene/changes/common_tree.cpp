@@ -136,17 +136,9 @@ TEST(CommonTree, has_the_bytes_of_parts_that_will_move) {
 // Cubes in a row, of twelve triangles each.
 Scene cubes(std::uint32_t count) {
   Scene scene;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto at = static_cast<float>(2 * i);
-    Mesh mesh = cube(0, 1);
-    for (Float3& vertex : mesh.vertices) vertex[0] += at;
-    scene.place(scene.add(Bvh(mesh)));
-  }
+  for (std::uint32_t i = 0; i < count; ++i) scene.place(scene.add(Bvh(cube_in_row(i))));
   scene.update();
   return scene;
-}
-Ray ray_at_cube(std::uint32_t i) {
-  return make_ray({static_cast<float>(2 * i) + 0.375f, 0.25f, -5}, {0, 0, 1});
 }
 void expect_report(const Scene& scene, std::size_t instances, bool has_bytes = true) {
   EXPECT_EQ(scene.report().common_instances, instances);
