@@ -20,6 +20,10 @@ struct TopLevel {
   std::vector<InstanceEntry>
       entries;                // in the leaves of `opened`, or else of `tree`; empty: none are triangles
   InstancesView walked = {};  // of the scene that has it
+  // Whether instances overlap so much that streams lose, whose top level is not opened; and from how many rays on they
+  // pay in the trees of all instances.
+  bool overlaps = false;
+  std::uint64_t closest_from = 0, occluded_from = 0;
 
   std::size_t bytes() const { return tree.bytes() + opened.bytes() + entries.size() * sizeof(InstanceEntry); }
 };

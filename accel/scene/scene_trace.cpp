@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <cstring>
 #include <optional>
+#include <span>
 
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/scratch.hpp"
+#include "../batch/shared_points.hpp"
 #include "reach.hpp"
 #include "scene_parts.hpp"
 
@@ -70,6 +72,7 @@ class SceneTracer {
   void visit_instances(const TopLevel& top, bool has_answers) {
     top_ = &top;
     walks_ = top.walked.entries != nullptr && has_only_a_mask();
+    if (walks_ && are_apart(top)) return walk_alone(top);
     if (has_answers && refers_to_leaf(top.tree.root) && query_.choice.counters == nullptr)
       return visit_few(padded(top));
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
@@ -81,6 +84,23 @@ class SceneTracer {
     boxes.visit = leaf, boxes.context = this;
     boxes.counters = query_.choice.counters;
     query_.queries().visit(padded(top), boxes);
+  }
+  // Whether rays meet little together in instances: a batch is not slower than a call for each ray.
+  bool are_apart(const TopLevel& top) const {
+    const TraversalChoice& choice = query_.choice;
+    if (choice.mode != TraversalMode::automatic) return choice.mode == TraversalMode::single;
+    if (top.overlaps) return true;
+    if (choice.hint != BatchHint::none) return choice.hint == BatchHint::incoherent;
+    const std::uint64_t from = batch_.hits != nullptr ? top.closest_from : top.occluded_from;
+    return batch_.size < from && !are_coherent(std::span(batch_.rays, batch_.size), top.tree.bounds);
+  }
+  void walk_alone(const TopLevel& top) const {
+    const TraversalKernels& kernels = query_.kernels.traversal;
+    for (std::size_t i = 0; i < batch_.size; ++i)
+      if (batch_.hits != nullptr)
+        kernels.closest_of_instances(top.walked, batch_.rays[i], query_.mask, batch_.hits[i]);
+      else if (batch_.occluded[i] == 0)
+        batch_.occluded[i] = kernels.any_of_instances(top.walked, batch_.rays[i], query_.mask) ? 1 : 0;
   }
   // The only leaf of a top level: most rays of a large scene come to none of a few instances.
   void visit_few(const TreeView& tree) {

@@ -15,6 +15,8 @@ constexpr float largest_shares[] = {0x1p-12f, 0x1p-6f, std::numeric_limits<float
 // boxes of its children together have less than max_growth times its area, else they overlap as much. Measured.
 constexpr double min_share = 1.0 / 25, max_growth = 1.7;
 constexpr std::size_t max_added = 2048;
+// Streams take as long as single rays where the boxes of instances have so many times the area of all. Measured.
+constexpr double max_overlap = 5;
 
 // An entry in the scene.
 struct PlacedEntry {
@@ -66,9 +68,15 @@ void open_largest(std::vector<PlacedEntry>& entries, std::span<const Instance> i
 void set_entries(TopLevel& top, std::span<const Instance> instances, std::span<const InstanceBounds> bounds) {
   std::vector<PlacedEntry> entries;
   entries.reserve(top.tree.order.size());
-  for (const std::uint32_t i : top.tree.order)
-    entries.push_back({{i, instances[i].tree->root}, bounds[i].box});
-  const double least = min_share * half_area_of(top.tree.bounds);
+  for (const std::uint32_t i : top.tree.order) {
+    const TreeView& tree = *instances[i].tree;
+    entries.push_back({{i, tree.root}, bounds[i].box});
+    top.closest_from += tree.streams_from.closest, top.occluded_from += tree.streams_from.occluded;
+  }
+  double area = 0;
+  for (const PlacedEntry& entry : entries) area += entry.area;
+  const double whole = half_area_of(top.tree.bounds), least = min_share * whole;
+  top.overlaps = area > max_overlap * whole;
   const auto is_large = [&](const PlacedEntry& entry) { return entry.area > least; };
   const bool opens = entries.size() > 1 && std::ranges::any_of(entries, is_large);
   if (opens) {

@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <raylanes/stretches.hpp>
+
 #include "module.hpp"
 #include "scene_states.hpp"
 
@@ -123,6 +125,11 @@ void bind_spheres(py::module_& module) {
 
 void bind_scenes(py::module_& module) {
   bind_spheres(module);
+  using Mask = std::uint32_t;
+  constexpr RayLists<SceneHit> (Scene::*hits)(RayView, const ListOptions&, Mask) const = &Scene::all_hits;
+  constexpr RayLists<SceneCrossing> (Scene::*passages)(RayView, const ListOptions&, Mask) const =
+      &Scene::crossings;
+  constexpr RayLists<SceneStretch> (*within)(const Scene&, RayView, const ListOptions&, Mask) = &stretches;
   auto scene = bind_shared<SharedScene>(module, "Scene");
   def_constructor(scene, empty_scene);
   def_constructor(scene, made_from<SharedScene>);
@@ -145,6 +152,10 @@ void bind_scenes(py::module_& module) {
       .def("closest_crossing", crossing_in_scene)
       .def("occluded", occluded_in_scene)
       .def("occluded_from", shadows_in_scene)
+      .def("all_hits", lists<SharedScene, hits, Mask>)
+      .def("crossings", lists<SharedScene, passages, Mask>)
+      .def("stretches", lists<SharedScene, within, Mask>)
+      .def("count_crossings", count_crossings<SharedScene, Mask>)
       .def("bounds", [](const SharedScene& shared) { return corners_of(shared.state->bounds()); })
       .def("nbytes", [](const SharedScene& shared) { return to_python(shared.state->bytes()); })
       .def("to_bytes", to_bytes<SharedScene>)

@@ -11,6 +11,7 @@ namespace raylanes::python {
 // As SharedTree: a query keeps the state that it begins with, and nobody sees a state change.
 struct SharedScene {
   using Object = Scene;
+  using Number = float;
   explicit SharedScene(Scene&& scene) : state(std::make_shared<Scene>(std::move(scene))) {}
   std::shared_ptr<Scene> state;
 };

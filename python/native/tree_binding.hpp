@@ -209,31 +209,31 @@ void corners(const SharedTree<T>& shared, const py::array& primitives, const py:
   query(shared, [&](const TreeOf<T>& tree) { tree.corners(names, triangles); });
 }
 
-// Offsets and items, as bytes.
-template <class T, auto list>
-py::tuple lists(const SharedTree<T>& shared, const py::object& rays, std::uint32_t max_count,
-                const char* facing, const char* path, int threads, const py::object& active,
-                const py::object& progress, const py::object& skip) {
-  const RaysOf<T> from(rays);
+// Offsets and items, as bytes. Mask: that of a query of scenes, or nothing.
+template <class Shared, auto list, class... Mask>
+py::tuple lists(const Shared& shared, const py::object& rays, std::uint32_t max_count, const char* facing,
+                const char* path, int threads, const py::object& active, const py::object& progress,
+                const py::object& skip, Mask... mask) {
+  const RaysOf<typename Shared::Number> from(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
-  auto found = query(shared, options, progress, from.count, [&](const TreeOf<T>& tree, const auto& heard) {
-    return std::invoke(list, tree, from, heard);
+  auto found = query(shared, options, progress, from.count, [&](const auto& tree, const auto& heard) {
+    return std::invoke(list, tree, from, heard, mask...);
   });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
-template <class T>
-void count_crossings(const SharedTree<T>& shared, const py::object& rays, const py::array& counts,
+template <class Shared, class... Mask>
+void count_crossings(const Shared& shared, const py::object& rays, const py::array& counts,
                      const char* facing, const char* path, int threads, const py::object& active,
-                     const py::object& progress, const py::object& skip) {
-  const RaysOf<T> from(rays);
+                     const py::object& progress, const py::object& skip, Mask... mask) {
+  const RaysOf<typename Shared::Number> from(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
   query(shared, options, progress, from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard, mask...); });
 }
 
 template <class T>

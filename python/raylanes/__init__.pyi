@@ -15,6 +15,8 @@ no_part: int
 ray_dtype: np.dtype[np.void]
 hit_dtype: np.dtype[np.void]
 scene_hit_dtype: np.dtype[np.void]
+scene_crossing_dtype: np.dtype[np.void]
+scene_stretch_dtype: np.dtype[np.void]
 crossing_dtype: np.dtype[np.void]
 stretch_dtype: np.dtype[np.void]
 double_stretch_dtype: np.dtype[np.void]
@@ -54,7 +56,7 @@ _Accuracy = float | Literal["correctly_rounded", "1 ulp", "1ulp", "within_1_ulp"
                             "2^-44", "2^-22", "2^-16", "2^-11", "2^-4",
                             "within_2^-44", "within_2^-22", "within_2^-16", "within_2^-11", "within_2^-4"]
 _Self = TypeVar("_Self", bound=_Stored)
-_Items = TypeVar("_Items", Hits, Crossings, Stretches)
+_Items = TypeVar("_Items", Hits, Crossings, Stretches, SceneHits, SceneCrossings, SceneStretches)
 
 class _WithFaces(Protocol):
     @property
@@ -183,6 +185,18 @@ class Crossing(np.void):
     def side(self) -> np.int32: ...
     def positions(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ...) -> _Floats: ...
 
+class SceneCrossings(Crossings):
+    @property
+    def geometry(self) -> _Ids: ...
+    @property
+    def instance(self) -> _Ids: ...
+
+class SceneCrossing(Crossing):
+    @property
+    def geometry(self) -> np.uint32: ...
+    @property
+    def instance(self) -> np.uint32: ...
+
 class Stretches(np.ndarray[Any, np.dtype[np.void]]):
     @property
     def entry(self) -> _Floats: ...
@@ -206,6 +220,18 @@ class Stretch(np.void):
     def left_by(self) -> np.uint32: ...
     @property
     def winding(self) -> np.int32: ...
+
+class SceneStretches(Stretches):
+    @property
+    def geometry(self) -> _Ids: ...
+    @property
+    def instance(self) -> _Ids: ...
+
+class SceneStretch(Stretch):
+    @property
+    def geometry(self) -> np.uint32: ...
+    @property
+    def instance(self) -> np.uint32: ...
 
 class ClosestPoints(_OnTriangle, _PlaceArray):
     @property
@@ -386,3 +412,17 @@ class Scene(_Stored):
                          test: _Test = ..., grade: _Grade = ..., mode: _Mode = ..., hint: _Hint = ...,
                          facing: _Facing = ..., skip: _Skip = ..., threads: int = ...,
                          progress: _Progress = ...) -> _Bools: ...
+    def all_hits(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                 tmax: _Rays = ..., mask: int = ..., max_count: int | None = ..., facing: _Facing = ...,
+                 skip: _Skip = ..., active: _Mask = ..., threads: int = ...,
+                 progress: _Progress = ...) -> Lists[SceneHits]: ...
+    def crossings(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                  tmax: _Rays = ..., mask: int = ..., max_count: int | None = ..., facing: _Facing = ...,
+                  skip: _Skip = ..., active: _Mask = ..., threads: int = ...,
+                  progress: _Progress = ...) -> Lists[SceneCrossings]: ...
+    def stretches(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                  tmax: _Rays = ..., mask: int = ..., max_count: int | None = ..., skip: _Skip = ...,
+                  active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> Lists[SceneStretches]: ...
+    def count_crossings(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
+                        tmax: _Rays = ..., mask: int = ..., facing: _Facing = ..., skip: _Skip = ..., out: Any = ...,
+                        active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> _Records: ...

@@ -23,6 +23,9 @@ scene_hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitiv
 crossing_dtype = np.dtype([("t", "<f4"), ("primitive", "<u4"), ("side", "<i4")])
 """A passage through the surface; side 1 along the normal, out of a solid, -1 against it."""
 
+scene_crossing_dtype = np.dtype([*crossing_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
+"""A passage through the surface of an instance: a crossing_dtype, and whose."""
+
 double_ray_dtype = np.dtype(
     [("origin", "<f8", 3), ("tmin", "<f8"), ("direction", "<f8", 3), ("tmax", "<f8")])
 """A ray of float64; otherwise as ray_dtype."""
@@ -37,6 +40,9 @@ double_crossing_dtype = np.dtype([("t", "<f8"), ("primitive", "<u4"), ("side", "
 stretch_dtype = np.dtype([("entry", "<f4"), ("exit", "<f4"), ("entered_by", "<u4"), ("left_by", "<u4"),
                           ("winding", "<i4")])
 """A stretch of a ray within a solid; no_primitive where the ray itself begins or ends."""
+
+scene_stretch_dtype = np.dtype([*stretch_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
+"""A stretch of a ray within an instance: a stretch_dtype, and of which."""
 
 double_stretch_dtype = np.dtype({"names": ["entry", "exit", "entered_by", "left_by", "winding"],
                                  "formats": ["<f8", "<f8", "<u4", "<u4", "<i4"], "itemsize": 32})
@@ -68,7 +74,7 @@ class Numbers(NamedTuple):
 FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, stretch_dtype, closest_point_dtype)
 DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
                   double_stretch_dtype, double_closest_point_dtype)
-SCENES = FLOATS._replace(hit=scene_hit_dtype)
+SCENES = FLOATS._replace(hit=scene_hit_dtype, crossing=scene_crossing_dtype, stretch=scene_stretch_dtype)
 
 
 def numbers_for(dtype, *arrays):

@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from ._answer import Answer
-from ._arrays import count_dtype, given_rays, packed, ray_rows
-from ._scalars import function, threads_of, word
-from ._traces import filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards, skipped
+from ._arrays import given_rays
+from ._traces import (counted, filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards,
+                      skipped)
 from ._warn import warn_of_sides
 from .hits import Crossings, Hits, Stretches
-from .paths import chosen
 
 
 class RayQueries:
@@ -265,7 +263,7 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
-                      threads, progress, skip)
+                      threads, progress, skipped(skip))
 
     def crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, facing="any",
                   skip=None, active=None, threads=0, progress=None):
@@ -293,7 +291,7 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
-                      active, threads, progress, skip)
+                      active, threads, progress, skipped(skip))
 
     def stretches(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, skip=None,
                   active=None, threads=0, progress=None):
@@ -324,7 +322,7 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.stretches, Stretches, self._numbers, self._numbers.stretch, rays, max_count, "any",
-                      active, threads, progress, skip)
+                      active, threads, progress, skipped(skip))
 
     def count_crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, facing="any",
                         skip=None, out=None, active=None, threads=0, progress=None):
@@ -350,8 +348,5 @@ class RayQueries:
         array([-1], dtype=int32)
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        given, shape = ray_rows(rays, self._numbers)
-        answer = Answer(out, shape, count_dtype, given, None if active is None else np.zeros((), count_dtype))
-        self._tree.count_crossings(given, answer.rows, word("facing", facing), chosen(), threads_of(threads),
-                                   packed(active, shape), function("progress", progress), skipped(skip))
-        return answer.finish()
+        return counted(self._tree.count_crossings, self._numbers, rays, out, facing, active, threads, progress,
+                       skipped(skip))

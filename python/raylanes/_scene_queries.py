@@ -4,8 +4,9 @@ import numpy as np
 
 from ._arrays import SCENES, given_rays, unsigned
 from ._scalars import count
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped_in_scene
-from .scene_hits import SceneHits
+from ._traces import (counted, filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards,
+                      skipped_in_scene)
+from .scene_hits import SceneCrossings, SceneHits, SceneStretches
 
 EVERY_BIT = 0xFFFFFFFF
 _instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", "<f4", (3, 4))])
@@ -209,6 +210,134 @@ class SceneQueries:
         bits_of_mask = _mask(mask)
         return shadows_towards(SCENES, direction, points, out, active, lambda *given: self._tree.occluded_from(
             *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
+
+    def all_hits(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
+                 max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
+        """Find every hit of each ray in all instances, once, in the order of t, then of instances, then of primitives.
+
+        Parameters
+        ----------
+        rays, origins, directions, tmin, tmax
+            As in closest(), in one dimension.
+        max_count : int, optional
+            Keep the first so many hits of each ray.
+        active : array of bool, optional
+            The active rays; the others have no hits.
+        mask, facing, skip, threads, progress
+            As in closest(), by the test "exact".
+
+        Returns
+        -------
+        Lists
+            The SceneHits of each ray.
+
+        Examples
+        --------
+        >>> scene.all_hits(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -1])).counts
+        array([1, 0])
+        """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.all_hits, SceneHits, SCENES, SCENES.hit, rays, max_count, facing, active, threads,
+                      progress, skipped_in_scene(skip), _mask(mask))
+
+    def crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
+                  max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
+        """Find each crossing of a ray and the surface of an instance, once, also at edges and vertices.
+
+        As Bvh.crossings() in the space of each instance. All geometries must consist of triangles.
+
+        Parameters
+        ----------
+        rays, origins, directions, tmin, tmax, mask, max_count, facing, skip, active, threads, progress
+            As in all_hits().
+
+        Returns
+        -------
+        Lists
+            The SceneCrossings of each ray, in the order of t, then of instances, then of primitives.
+
+        Raises
+        ------
+        ValueError
+            If a geometry has spheres.
+
+        Examples
+        --------
+        >>> crossings = scene.crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))[0]
+        >>> crossings.side, crossings.instance
+        (array([-1], dtype=int32), array([0], dtype=uint32))
+        """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.crossings, SceneCrossings, SCENES, SCENES.crossing, rays, max_count, facing, active,
+                      threads, progress, skipped_in_scene(skip), _mask(mask))
+
+    def stretches(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
+                  max_count=None, skip=None, active=None, threads=0, progress=None):
+        """Find where each ray runs within each instance: each entry with its exit, and the winding number between them.
+
+        As Bvh.stretches(), of each instance by itself. All geometries must consist of triangles.
+
+        Parameters
+        ----------
+        rays, origins, directions, tmin, tmax, mask, max_count, skip, active, threads, progress
+            As in all_hits().
+
+        Returns
+        -------
+        Lists
+            The SceneStretches of each ray, in the order of their entries, then of instances.
+
+        Raises
+        ------
+        ValueError
+            If a geometry has spheres.
+
+        Examples
+        --------
+        >>> solid = raylanes.Scene()
+        >>> solid.place(solid.add(np.float32([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]),
+        ...                       [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+        0
+        >>> solid.update()
+        >>> within = solid.stretches(raylanes.rays([[1, 1, 9]], [0, 0, -1]))[0]
+        >>> within.entry, within.exit, within.instance
+        (array([7.], dtype=float32), array([9.], dtype=float32), array([0], dtype=uint32))
+        """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return listed(self._tree.stretches, SceneStretches, SCENES, SCENES.stretch, rays, max_count, "any", active,
+                      threads, progress, skipped_in_scene(skip), _mask(mask))
+
+    def count_crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
+                        facing="any", skip=None, out=None, active=None, threads=0, progress=None):
+        """Count the crossings of each ray over all instances, and add up their sides.
+
+        Parameters
+        ----------
+        rays, origins, directions, tmin, tmax, mask, out, skip, threads, progress
+            As in closest(), by the test "exact".
+        facing : {"any", "front", "back"}, default "any"
+            Count crossings of these sides only, as in crossings().
+        active : array of bool, optional
+            The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array their counts are 0.
+
+        Returns
+        -------
+        ndarray of count_dtype
+            The fields crossings and winding, in the shape of rays.
+
+        Raises
+        ------
+        ValueError
+            If a geometry has spheres.
+
+        Examples
+        --------
+        >>> scene.count_crossings(raylanes.rays([[0, 0, 5]], [0, 0, -1]))["winding"]
+        array([-1], dtype=int32)
+        """
+        rays = given_rays(rays, origins, directions, tmin, tmax)
+        return counted(self._tree.count_crossings, SCENES, rays, out, facing, active, threads, progress,
+                       skipped_in_scene(skip), _mask(mask))
 
     def geometry_of(self, instance):
         """Return the geometry of an instance, or of each of many.

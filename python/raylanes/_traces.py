@@ -3,7 +3,7 @@
 import numpy as np
 
 from ._answer import Answer, overlap
-from ._arrays import packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
+from ._arrays import count_dtype, packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
 from ._scalars import count, function, real, threads_of, word
 from .hits import Lists
 from .paths import chosen
@@ -26,15 +26,24 @@ def shadows(numbers, rays, out, active, ask):
     return answer.finish()
 
 
-def listed(ask, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip):
-    """Lists of items of the class `kind`, records of `dtype`, which ask() returns as bytes."""
+def listed(ask, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip, *mask):
+    """Lists of items of the class `kind`, records of `dtype`, which ask() returns as bytes. skip: as rows."""
     given, shape = ray_rows(rays, numbers)
     if len(shape) != 1:
         raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
     limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
     offsets, items = ask(given, limit, word("facing", facing), chosen(), threads_of(threads), packed(active, shape),
-                         function("progress", progress), skipped(skip))
+                         function("progress", progress), skip, *mask)
     return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
+
+
+def counted(ask, numbers, rays, out, facing, active, threads, progress, skip, *mask):
+    """The crossings of each ray, which ask() counts. skip: as rows."""
+    given, shape = ray_rows(rays, numbers)
+    answer = Answer(out, shape, count_dtype, given, None if active is None else np.zeros((), count_dtype))
+    ask(given, answer.rows, word("facing", facing), chosen(), threads_of(threads), packed(active, shape),
+        function("progress", progress), skip, *mask)
+    return answer.finish()
 
 
 def shadows_from(numbers, origin, points, ends, out, active, ask):

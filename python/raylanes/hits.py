@@ -256,7 +256,7 @@ class Lists:
     ----------
     offsets : ndarray of int64, shape (n + 1,)
         The index of the first item of each ray, and the end of the last.
-    items : Hits, Crossings or Stretches, shape (h,)
+    items : Hits, Crossings or Stretches, or those of scenes, shape (h,)
         The items of all rays, ray by ray.
     """
 

@@ -3,15 +3,18 @@
 import numpy as np
 
 from ._arrays import no_part, no_primitive, numbers, scene_hit_dtype
-from .hits import HitNumbers, Hits, Records, field_of
+from .hits import Crossing, Crossings, HitNumbers, Hits, Records, Stretch, Stretches, field_of
 from .sphere_tree import SphereTree
 
 
-class _SceneHitNumbers(HitNumbers):
-    primitive = field_of("primitive", "uint32: row of the triangle in the faces of its geometry, or row of the sphere; "
-                         "no_primitive for a miss")
+class _InScene:
     geometry = field_of("geometry", "uint32: index of the geometry; no_part for a miss")
     instance = field_of("instance", "uint32: index of the instance; no_part for a miss")
+
+
+class _SceneHitNumbers(_InScene, HitNumbers):
+    primitive = field_of("primitive", "uint32: row of the triangle in the faces of its geometry, or row of the sphere; "
+                         "no_primitive for a miss")
 
     def interpolate(self, values, faces):
         """Compute the mean of three vertices' values by barycentric weights, as Hits.interpolate() does.
@@ -126,6 +129,26 @@ class SceneHits(_SceneHitNumbers, Records):
 
     _record = SceneHit
     _miss = (np.inf, 0, 0, no_primitive, no_part, no_part)
+
+
+class SceneCrossing(_InScene, Crossing):
+    """A single crossing in a scene: crossings[i], with the properties and methods of SceneCrossings."""
+
+
+class SceneCrossings(_InScene, Crossings):
+    """An array of scene_crossing_dtype; crossings[i] is a SceneCrossing. A side is that in the instance's space."""
+
+    _record = SceneCrossing
+
+
+class SceneStretch(_InScene, Stretch):
+    """A single stretch within an instance: stretches[i], with the properties of SceneStretches."""
+
+
+class SceneStretches(_InScene, Stretches):
+    """An array of scene_stretch_dtype; stretches[i] is a SceneStretch."""
+
+    _record = SceneStretch
 
 
 def _rows_of(hits):
