@@ -1,7 +1,7 @@
 // How the tool times and counts.
 #include "../support/rulers/measure.hpp"
 
-#include "../../tests/support/std.hpp"
+#include "../../tests/support/testing.hpp"
 #include "../support/rulers/instruction_counter.hpp"
 
 namespace raylanes::bench {

@@ -1,7 +1,7 @@
 // Primary, shadow, diffuse, ambient occlusion and random rays.
 #include "../support/rays/ray_sets.hpp"
 
-#include "../../tests/support/std.hpp"
+#include "../../tests/support/testing.hpp"
 #include "../support/scenes/vector3.hpp"
 #include "scene_samples.hpp"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../tests/support/std.hpp"
+#include "../../tests/support/testing.hpp"
 
 namespace raylanes::bench {
 

@@ -3,7 +3,7 @@
 
 #include <raylanes/types.hpp>
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

@@ -2,7 +2,7 @@
 // still a hit, and a miss none.
 #include <raylanes/raylanes.hpp>
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes {
 namespace {

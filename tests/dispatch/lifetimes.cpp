@@ -1,7 +1,7 @@
 // Views of temporaries: refused where they would show free memory, taken where they live as long as the call.
 #include <raylanes/raylanes.hpp>
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes {
 namespace {

@@ -1,6 +1,6 @@
 // Numbers in messages read back as they were.
 #include "../../dispatch/checked.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/splitmix.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

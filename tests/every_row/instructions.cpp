@@ -4,7 +4,7 @@
 
 #include <raylanes/cpu_features.hpp>
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 namespace {

@@ -7,7 +7,7 @@
 #include <raylanes/types.hpp>
 
 #include "../../bench/support/scenes/vector3.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

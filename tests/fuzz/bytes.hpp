@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../../bench/support/scenes/splitmix.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

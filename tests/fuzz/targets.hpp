@@ -3,7 +3,7 @@
 // itself from a seed, and libFuzzer.
 #pragma once
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 // Rays of any bits through trees over meshes of any finite ones.
 int fuzz_trace(const std::uint8_t* data, std::size_t size);

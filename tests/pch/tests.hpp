@@ -9,4 +9,4 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"

@@ -6,7 +6,7 @@
 
 #include "../../bench/support/oracles/exact_sphere.hpp"
 #include "../../bench/support/reproducible/fixed_rays.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

@@ -3,7 +3,7 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/roots.hpp"
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 #include "../support/supported_paths.hpp"
 
 namespace raylanes::testing {

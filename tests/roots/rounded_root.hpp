@@ -1,7 +1,7 @@
 // Whether a root is the correctly rounded one, in integers alone; and doubles whose roots are hard to round.
 #pragma once
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 
 namespace raylanes::testing {
 

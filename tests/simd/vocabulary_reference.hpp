@@ -1,7 +1,7 @@
 // The vocabulary's meaning in plain scalar code, operation by operation, on the bits of the operands.
 #pragma once
 
-#include "../support/std.hpp"
+#include "../support/testing.hpp"
 #include "../support/system/fused.hpp"
 
 namespace raylanes::testing {

@@ -1,7 +1,7 @@
 // A fault of emulated processors that the tests see for themselves and step around, aloud.
 #pragma once
 
-#include "std.hpp"
+#include "testing.hpp"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>

@@ -3,7 +3,7 @@
 
 #include <new>
 
-#include "std.hpp"
+#include "testing.hpp"
 #include "system/guard_pages.hpp"
 
 namespace raylanes::testing {

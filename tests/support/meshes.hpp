@@ -4,7 +4,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "std.hpp"
+#include "testing.hpp"
 
 namespace raylanes::testing {
 

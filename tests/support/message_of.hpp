@@ -7,7 +7,7 @@
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/table/kernel_table.hpp"
-#include "std.hpp"
+#include "testing.hpp"
 
 namespace raylanes {
 

@@ -5,7 +5,7 @@
 
 #include <raylanes/progress.hpp>
 
-#include "std.hpp"
+#include "testing.hpp"
 
 namespace raylanes::testing {
 

@@ -3,7 +3,7 @@
 
 #include <ranges>
 
-#include "std.hpp"
+#include "testing.hpp"
 
 namespace raylanes::testing {
 

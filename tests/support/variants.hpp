@@ -10,7 +10,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
 #include "../../dispatch/table/triangles.hpp"
-#include "std.hpp"
+#include "testing.hpp"
 #include "supported_paths.hpp"
 
 namespace raylanes::testing {

@@ -5,7 +5,7 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 
-#include "../../support/std.hpp"
+#include "../../support/testing.hpp"
 
 namespace raylanes::testing {
 

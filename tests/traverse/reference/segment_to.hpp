@@ -4,7 +4,7 @@
 #include <raylanes/rays.hpp>
 
 #include "../../../dispatch/table/numbers.hpp"
-#include "../../support/std.hpp"
+#include "../../support/testing.hpp"
 
 namespace raylanes::testing {
 
