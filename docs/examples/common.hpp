@@ -27,6 +27,19 @@ inline Float3 unit(const Float3& a) {
   return add({}, a, 1 / std::sqrt(dot(a, a)));
 }
 
+// A box around others, which begins empty, and half its area.
+struct Bounds {
+  Float3 lo{9, 9, 9}, hi{-9, -9, -9};
+
+  void add(const Bounds& b) {
+    for (std::size_t k = 0; k < 3; ++k) lo[k] = std::min(lo[k], b.lo[k]), hi[k] = std::max(hi[k], b.hi[k]);
+  }
+  float area() const {
+    const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
+    return x * y + y * z + z * x;
+  }
+};
+
 // Writes grey levels from 0 (black) to 1, or three of them a pixel, row by row from the top.
 inline void write_png(const std::string& file, std::size_t width, const std::vector<float>& levels,
                       std::size_t channels = 1) {

@@ -29,15 +29,17 @@ inline void prepare_for_spheres(const Float3& direction, detail::RayAmong& prepa
   prepared.square = s.square.raw, prepared.inverse_square = s.inverse_square.raw;
 }
 
-inline void prepare(const Ray& given, detail::RayAmong& prepared) {
-  Ray ray = given;
-  ray.tmax = std::numeric_limits<float>::infinity();  // the end may change
-  if (!is_valid(ray)) ray.tmin = std::numeric_limits<float>::quiet_NaN();
-  ray.tmax = given.tmax;
-  prepare_for_boxes(ray.direction, prepared);
-  prepare_for_spheres(ray.direction, prepared);
-  prepare_for_triangles(ray.direction, prepared);
+// Stores the ray as a whole: what loads it as a whole would wait for parts. Its end may change.
+inline void prepare(const Ray& ray, detail::RayAmong& prepared) {
+  const Float3 direction = ray.direction;
+  Ray any_end = ray;
+  any_end.tmax = std::numeric_limits<float>::infinity();
+  const bool valid = is_valid(any_end);
   prepared.ray = ray;
+  if (!valid) prepared.ray.tmin = std::numeric_limits<float>::quiet_NaN();
+  prepare_for_boxes(direction, prepared);
+  prepare_for_spheres(direction, prepared);
+  prepare_for_triangles(direction, prepared);
 }
 
 }  // namespace

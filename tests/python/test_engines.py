@@ -11,7 +11,7 @@ import pytest
 
 from meshes import supported
 
-examples = pathlib.Path(__file__).parents[2] / "docs/examples"
+examples = pathlib.Path(__file__).parents[2] / "docs/examples/processes"
 slow, fast = ("sse2" if "sse2" in supported else "scalar"), ("avx2" if "avx2" in supported else supported[-1])
 
 
