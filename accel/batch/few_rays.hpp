@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <raylanes/traversal.hpp>
 
@@ -17,6 +18,9 @@ inline constexpr std::size_t min_batch = 64, min_flying_batch = 32;
 inline std::size_t batch_size_of(const TreeView& tree) {
   return tree.rays_wait ? min_flying_batch : min_batch;
 }
+
+// But from so many rays of floats on, nearest hits of rays with one origin may be a packet's: measured.
+inline constexpr std::size_t min_packet = 32;
 
 // Rays that lie as kernels read them and the answers to them in a row. False if there are many of them, or something is
 // asked of the batch that the loop does not have.
@@ -35,6 +39,10 @@ class FewRays {
     if (!is_plain) rays_ = nullptr;
   }
   explicit operator bool() const { return rays_ != nullptr; }
+  bool may_be_packet() const {
+    constexpr bool only_decides = std::is_same_v<Answer, std::uint8_t>;
+    return !only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin;
+  }
   // answers[i] = call(rays[i], i)
   template <class Call>
   void trace(const Call& call) const {

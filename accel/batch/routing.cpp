@@ -179,7 +179,10 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
     const auto left = rays.subspan(i);
     count = origins ? count_of_origin(left) : 0;
     const bool is_forced = choice.mode == TraversalMode::packet && count == left.size();
-    if (count >= min_shared_point || is_forced) {
+    // Tests that round may not agree in packets: they go there as ever.
+    const bool is_few =
+        batch.hits != nullptr && count == batch.size && count >= min_packet && !choice.fixed_parts;
+    if (count >= min_shared_point || is_few || is_forced) {
       run_shared(tree, choice, batch.part(i, count), SharedApex::origin, left[0].origin);
       continue;
     }

@@ -283,8 +283,9 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
     are_sparse = of_a_ray * min_density_of_packets > 1;
     if (are_sparse && rays.size() < min_wide_stream) return {max_of_a_ray, max_of_a_ray};
   }
+  const std::size_t min_traced = rays.size() < 2 * min_shared_point ? 1 : 3;
   const std::size_t traced = by_origins ? std::clamp<std::size_t>(rays.size() / 64, 4, max_traced)
-                                        : std::clamp<std::size_t>(rays.size() / 128, 3, max_traced);
+                                        : std::clamp<std::size_t>(rays.size() / 128, min_traced, max_traced);
   const bool one_may_decide = !by_origins && rays.size() <= few_rays;
   // The share of a ray, if all together went anywhere through the tree.
   const double all = area_of(tree.bounds) / static_cast<double>(std::min(rays.size(), rays_of_streams));

@@ -130,7 +130,7 @@ bool trace_few(const TreeView* ready, const RayView& rays, Answer* answers, std:
                const TraceOptions& options, OfUsual usual, OfChosen of_chosen) {
   if (!is_quick(ready)) return false;
   const FewRays few(rays, answers, count, options, batch_size_of(*ready));
-  if (!few) return false;
+  if (!few || few.may_be_packet()) return false;
   if (const CallRow* const row = usual_row(options)) {
     few.trace([&, call = row->*usual](const Ray& ray, std::size_t) { return call(*ready, ray); });
     return true;

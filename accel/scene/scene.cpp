@@ -136,7 +136,7 @@ bool trace_few(const SceneParts& scene, const RayView& rays, Answer* answers, st
   if (tree == nullptr && (scene.has_others() || !is_usual_and_walked(scene, options))) return false;
   const FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
   const CallInTree call(tree, options, rays.count);
-  if (!few || (tree != nullptr && !call)) return false;
+  if (!few || (tree != nullptr && (!call || few.may_be_packet()))) return false;
   const Path& path = checked_path(options.path);
   few.trace([&](const Ray& ray, std::size_t i) -> Answer {
     if constexpr (std::is_same_v<Answer, SceneHit>)

@@ -208,20 +208,23 @@ TEST_F(CountedRouting, takes_packets_of_dense_rays) {
     }
 }
 
-// By what the modes cost: 64 rays are a packet in a narrow view of large triangles, and single rays elsewhere.
+// By what the modes cost: 32 rays are a packet in a narrow view of large triangles, and single rays elsewhere.
 TEST_F(CountedRouting, takes_packets_of_few_rays_in_narrow_views) {
-  for (const float distance : {1.0f, 30.0f})
-    for (const std::uint32_t cells : {2u, 120u}) {
-      const Bvh bvh(square_of(cells));
-      std::vector<Ray> rays = rays_to_square(8, SharedApex::origin);
-      for (auto& [origin, tmin, direction, tmax] : rays) origin[2] = distance, direction[2] = -distance;
-      const auto cost = [&](TraversalMode mode) { return counts_of(bvh, rays, false, {.mode = mode}); };
-      ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
-      ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::packet));
-      EXPECT_EQ(cost(TraversalMode::automatic),
-                cost(distance == 30 && cells == 2 ? TraversalMode::packet : TraversalMode::single))
-          << distance << ' ' << cells;
-    }
+  for (const std::size_t count : {31u, 32u, 64u})
+    for (const float distance : {1.0f, 30.0f})
+      for (const std::uint32_t cells : {2u, 120u}) {
+        const Bvh bvh(square_of(cells));
+        std::vector<Ray> rays = rays_to_square(8, SharedApex::origin);
+        rays.resize(count);
+        for (auto& [origin, tmin, direction, tmax] : rays) origin[2] = distance, direction[2] = -distance;
+        const auto cost = [&](TraversalMode mode) { return counts_of(bvh, rays, false, {.mode = mode}); };
+        ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::stream));
+        ASSERT_NE(cost(TraversalMode::single), cost(TraversalMode::packet));
+        const bool is_packet = count >= 32 && distance == 30 && cells == 2;
+        EXPECT_EQ(cost(TraversalMode::automatic),
+                  cost(is_packet ? TraversalMode::packet : TraversalMode::single))
+            << count << ' ' << distance << ' ' << cells;
+      }
 }
 
 // From the middles of such squares, in directions that have nothing in common.

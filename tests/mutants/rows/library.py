@@ -12,6 +12,8 @@ MUTANTS = [
     *rows_of('accel/batch/checked_call.hpp', 'test_queries',
         ('call: hits to look behind are not copied', 'const bool is_in_place = ',
          'const bool is_in_place = true || '), source='accel/queries/nearest.cpp'),
+    *rows_of('accel/batch/few_rays.hpp', 'test_bvh',
+        ('few rays: packets of more rays', 'min_packet = 32', 'min_packet = 33'), source='accel/batch/routing.cpp'),
     *rows_of('accel/batch/few_rays.hpp', 'test_trees',
         ('few rays: among their answers', 'are_apart(rays_, size_', 'are_apart(nullptr, size_'),
         ('few rays: skips are written over', 'if (skip.count != size_ ', 'if (skip.count == size_) return true;\n'
