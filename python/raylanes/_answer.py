@@ -16,7 +16,7 @@ class Answer:
             self.array = np.empty(shape, dtype) if initial is None else np.zeros(shape, dtype)  # also between fields
             if initial is not None:
                 self.array[...] = initial
-            self.rows = self.array.reshape(-1)
+            self.rows = self.array if len(shape) == 1 else self.array.reshape(-1)
             return
         if not isinstance(out, np.ndarray) or out.dtype != dtype:
             has = out.dtype if isinstance(out, np.ndarray) else type(out).__name__

@@ -226,6 +226,9 @@ class RayParts(NamedTuple):
             if part.ndim == 0 or part.shape[-1] != 3:
                 raise ValueError(f"{name}: the last of its axes must have 3 numbers, its shape is {part.shape}")
         shapes = [part.shape[:-1] for part in parts[:2]] + [part.shape for part in parts[2:]]
+        longest = max(shapes, key=len)
+        if all(shape in ((), longest) for shape in shapes):  # NumPy's function costs more than a query of few rays
+            return parts, longest
         try:
             return parts, np.broadcast_shapes(*shapes)
         except ValueError:
@@ -321,7 +324,13 @@ def _spread(part, shape, columns, real):
     part = part.astype(real, copy=False)
     if columns and part.strides[-1] != part.itemsize:
         part = np.ascontiguousarray(part)
-    flat = np.broadcast_to(part, shape + columns).reshape(count_of(shape), *columns)
+    rows = (count_of(shape), *columns)
+    if rows[0] == 1 or part.shape == shape + columns:
+        flat = part.reshape(rows)
+    elif part.ndim == len(columns):  # shared
+        return np.ndarray(rows, real, part, 0, (0, *part.strides))
+    else:
+        flat = np.broadcast_to(part, shape + columns).reshape(rows)
     return flat if flat.size == 0 or flat.strides[0] >= 0 else np.ascontiguousarray(flat)
 
 

@@ -72,9 +72,8 @@ def _shadows_of(name, instead, numbers, light, points, ends, out, active, ask):
 
 def how(test, grade, mode, hint, facing, threads, progress, skip):
     """The options of a trace as the native module takes them."""
-    names = zip(("test", "grade", "mode", "hint"), (test, grade, mode, hint))
-    return (*(word(*named) for named in names), chosen(), threads_of(threads), word("facing", facing),
-            function("progress", progress), skip)
+    return (word("test", test), word("grade", grade), word("mode", mode), word("hint", hint), chosen(),
+            threads_of(threads), word("facing", facing), function("progress", progress), skip)
 
 
 def skipped(skip):

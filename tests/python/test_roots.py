@@ -96,6 +96,27 @@ def test_layouts_and_out():
     assert raylanes.sqrt(np.float32(9), out=out) is out and out == 3
 
 
+@pytest.mark.parametrize("root", functions)
+def test_some_elements(root):
+    """As NumPy's where=, but that a new array holds zeros elsewhere."""
+    x = np.random.default_rng(6).uniform(1, 9, (5, 7)).astype(np.float32)
+    best, row = "correctly_rounded", np.arange(7) % 3 == 0
+    all_roots = root(x, best)
+    for mask in (x > 4, row, np.array(True), False, np.zeros((5, 7), bool)):
+        expected = np.where(mask, all_roots, np.float32(0))
+        assert root(x, best, where=mask).tobytes() == expected.tobytes()
+        assert root(x.T, best, where=np.broadcast_to(mask, x.shape).T).tobytes() == expected.T.tobytes()
+        for out in (np.full((5, 7), 8, "f4"), np.full((5, 14), 8, "f4")[:, ::2], x.copy()):
+            before = out.copy()
+            given = out if np.array_equal(out, x) else x
+            assert root(given, best, out, where=mask) is out and (out == np.where(mask, all_roots, before)).all()
+    assert root(4.0, where=True) == root(4.0) and root(4.0, where=False) == 0
+    with pytest.raises(TypeError, match="^where: booleans are needed, not int64"):
+        root(x, where=np.ones((5, 7), int))
+    with pytest.raises(ValueError, match="^where: the shape must be that of x, \\(5, 7\\)"):
+        root(x, where=np.ones(5, bool))
+
+
 def test_wrong_arguments():
     x = np.ones(4, np.float32)
     for wrong, sentence in [(lambda: raylanes.sqrt(x, "best"), 'no "best", but correctly_rounded'),
