@@ -19,7 +19,7 @@ MUTANTS = [
         ('few rays: skips are written over', 'if (skip.count != size_ ', 'if (skip.count == size_) return true;\n'
          '    if (skip.count != size_ '),
         ('few rays: progress is not told', 'options.progress == nullptr', 'true'),
-        ('few rays: fewer answers', 'count == size_', 'true'), source='accel/queries/nearest.cpp'),
+        ('few rays: fewer answers', 'count == size_', 'count <= size_'), source='accel/queries/nearest.cpp'),
     *rows_of('accel/batch/ray_source.hpp', 'test_bvh',
         ('queries: overlapping hits', 'if (hits.stride < sizeof(Record) && hits.count > 1)',
          'if (false)'), source='accel/queries/nearest.cpp'),
