@@ -1,11 +1,4 @@
 // Prepared rays: the bytes of the calls with a Ray, for boxes, spheres and triangles, on every path.
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/prepared_ray.hpp>
 #include <raylanes/spheres.hpp>

@@ -1,7 +1,5 @@
 // Arrays of few numbers, which calls without a path take inline: as IEEE 754 has them in every length and place, with
 // the flags of each path and -ffast-math.
-#include <gtest/gtest.h>
-
 #include <raylanes/roots.hpp>
 
 #include "../../bench/support/rulers/of_path.hpp"

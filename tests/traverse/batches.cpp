@@ -1,12 +1,4 @@
 // Batches of rays: with bad ones among neighbours, of any length, on threads, with segments that end at hits.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <span>
-#include <utility>
-#include <vector>
-
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -1,13 +1,4 @@
 // One ray a call: the bytes of a batch of single rays on the scalar path, whatever the tree went through.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/kdtree.hpp>
 

@@ -1,10 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <cstdint>
 #include <random>
-#include <string>
-#include <vector>
 
 #include <raylanes/raylanes.hpp>
 

@@ -3,8 +3,6 @@
 // time. Decisions are judged when the first row runs, so that --help and lists come at once.
 #include <benchmark/benchmark.h>
 
-#include <string>
-
 #include "../roots/benchmark_roots.hpp"
 #include "kernel_rows.hpp"
 

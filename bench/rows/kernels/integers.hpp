@@ -1,12 +1,10 @@
 // The decision in integers that stands behind the exact test, for a ray and a triangle as users have them.
 #pragma once
 
-#include <algorithm>
-#include <limits>
-
 #include <raylanes/types.hpp>
 
 #include "../../../kernels/exact/predicate.hpp"
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 

@@ -1,15 +1,12 @@
 // Inputs to time intersection loops on.
 #pragma once
 
-#include <cstdint>
-#include <limits>
 #include <new>
-#include <utility>
-#include <vector>
 
 #include <raylanes/types.hpp>
 
 #include "../../support/scenes/splitmix.hpp"
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 

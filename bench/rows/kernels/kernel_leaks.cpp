@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <cstdint>
-
 #include "../../../dispatch/table/traversal.hpp"
 #include "../../support/rays/aim.hpp"
 #include "../../support/rays/leak_targets.hpp"

@@ -1,10 +1,5 @@
 #include "kernel_rows.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>

@@ -1,12 +1,6 @@
 // The rows of the table of intersection tests: one per test, grade, form, query and path.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/paths.hpp>
 
 #include "../../support/rulers/instruction_counter.hpp"

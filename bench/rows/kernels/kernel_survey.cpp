@@ -1,10 +1,5 @@
 #include "kernel_survey.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-
 #include "../../support/oracles/exact_box.hpp"
 #include "../../support/oracles/exact_sphere.hpp"
 #include "../../support/oracles/exact_triangle.hpp"

@@ -2,16 +2,11 @@
 // leaks of a closed mesh.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string_view>
-#include <vector>
-
 #include <raylanes/boxes.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/triangles.hpp>
+
+#include "../../support/std.hpp"
 
 namespace raylanes::bench {
 
