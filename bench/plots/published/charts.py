@@ -1,10 +1,12 @@
 """The charts of README.md and docs/, made from the measured files of bench/results. Needs matplotlib."""
 import plot_style
 from results import KINDS
-from roots import ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, root_gains, root_times
+from roots import (ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, SHORT_LENGTHS, SHORT_WAYS, root_gains, root_times,
+                   short_times)
 
 INK = '#808080'  # readable on a light and on a dark page
 FRONTS = ('sse2', 'avx', 'avx2', 'avx512')
+FEW = (4, 8, 16, 32, 64)  # primitives; prepared rays take all but the last
 # Above a plot, where no line crosses it.
 LEGEND = {'fontsize': 8, 'loc': 'lower left', 'borderaxespad': 0, 'handletextpad': 0.5}
 
@@ -74,13 +76,12 @@ def name_methods(axes, rows):
     return [f"{rows[method]['nanoseconds']:.3f}" for method in NAMES]
 
 
-def roots_chart(results):
-    """Time against the largest error of square roots of floats: a front for each ISA path."""
-    figure, axes = plot_style.plt.subplots(figsize=(8.4, 4.6), layout='constrained')
+def draw_fronts(axes, results, function):
+    """The methods of a function, and a front for each ISA path; returns what that shows."""
     shown = []
     for (colour, marker), path in zip(plot_style.SERIES, FRONTS):
         # No accuracy takes the unchecked method.
-        rows = [row for row in results.where(function='sqrt', path=path) if row['method'] != 'estimate_unchecked']
+        rows = [row for row in results.where(function=function, path=path) if row['method'] != 'estimate_unchecked']
         front = front_of(rows)
         errors, times = [row['max_ulp'] for row in front], [row['nanoseconds'] for row in front]
         axes.plot([row['max_ulp'] for row in rows], [row['nanoseconds'] for row in rows], marker, color=colour,
@@ -90,6 +91,30 @@ def roots_chart(results):
         shown += [path, *(f'{time:.3f}' for time in times)]
     axes.set_xscale('log')
     axes.set_yscale('log')
+    axes.yaxis.set_minor_formatter(lambda y, _: '')
+    axes.grid(axis='x', visible=False)
+    return shown
+
+
+def other_roots_chart(results):
+    """Time against the largest error of reciprocal roots of floats, and of roots of doubles."""
+    functions = {'rsqrt': '1/√x of floats', 'double_sqrt': '√x of doubles', 'double_rsqrt': '1/√x of doubles'}
+    figure, panels = plot_style.plt.subplots(1, 3, figsize=(8.4, 3.4), layout='constrained', sharey=True)
+    shown = []
+    for axes, (function, title) in zip(panels, functions.items()):
+        shown += draw_fronts(axes, results, function)
+        axes.set_title(title, fontsize=9, loc='left')
+        axes.set_xlabel('largest error [ULP]')
+        axes.set_yticks([0.02, 0.05, 0.1, 0.2, 0.5, 1, 2], ['0.02', '0.05', '0.1', '0.2', '0.5', '1', '2'])
+    panels[0].set_ylabel('time [ns a value]')
+    legend_over(figure, panels[0], 4)
+    return finished(figure, 'Reciprocal roots of floats, and roots of doubles: error against time', ' '.join(shown))
+
+
+def roots_chart(results):
+    """Time against the largest error of square roots of floats: a front for each ISA path."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 4.6), layout='constrained')
+    shown = draw_fronts(axes, results, 'sqrt')
     for name, (bound, side) in BOUNDS.items():
         axes.axvline(bound, linestyle=(0, (1, 3)), color=INK, linewidth=1)
         axes.annotate(name, (bound, 1), (0, 3), xycoords=('data', 'axes fraction'), textcoords='offset points',
@@ -100,8 +125,6 @@ def roots_chart(results):
     axes.set_xlim(0.04, 3e6)
     axes.set_ylim(0.03, 0.7)
     axes.set_yticks([0.05, 0.1, 0.2, 0.5], ['0.05', '0.1', '0.2', '0.5'])
-    axes.yaxis.set_minor_formatter(lambda y, _: '')
-    axes.grid(axis='x', visible=False)
     axes.legend(bbox_to_anchor=(0, 1.06), ncols=4, title='the fastest methods for their error, by ISA path',
                 title_fontsize=8, alignment='left', **LEGEND)
     return finished(figure, 'Square roots: error against time, a front for each ISA path', ' '.join(shown))
@@ -133,6 +156,48 @@ def lengths_chart(results):
     lines = [([way], way.replace('_', ' '), root_gains(results, way)) for way in ROOT_WAYS[1:-1]]
     labels = 'floats in the array; in and out take 8 bytes each', 'speed, × instruction'
     return ratios_by_size(ROOT_LENGTHS, lines, labels, 'Square roots: gain over the instruction by length of the array')
+
+
+def short_chart(results):
+    """Time of roots of arrays of one number and more: loops, and calls that take few numbers inline."""
+    figure, axes = plot_style.plt.subplots(figsize=(8.4, 3.4), layout='constrained')
+    shown = []
+    for (colour, marker), (way, words) in zip(plot_style.SERIES, SHORT_WAYS.items()):
+        times = short_times(results, way)
+        axes.plot(SHORT_LENGTHS, times, marker=marker, color=colour, markersize=3, linewidth=1.2,
+                  linestyle='--' if 'std' in way else '-', label=words.replace('`', ''))
+        shown += [way, *(f'{time:.3f}' for time in times)]
+    axes.set_xscale('log', base=2)
+    axes.set_xticks([4 ** k for k in range(7)], [f'{4 ** k:,}' for k in range(7)])
+    axes.set_yscale('log')
+    axes.set_yticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5], ['0.05', '0.1', '0.2', '0.5', '1', '2', '5'])
+    axes.yaxis.set_minor_formatter(lambda y, _: '')
+    axes.set_xlabel('floats in the array')
+    axes.set_ylabel('time [ns a value]')
+    axes.legend(bbox_to_anchor=(0, 1.02), ncols=2, **LEGEND)
+    return finished(figure, 'Roots: time by the length of the array', ' '.join(shown))
+
+
+def few_chart(results):
+    """Time of a call with one ray and few primitives, by a prepared ray and by calls that check it."""
+    figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 3.2), layout='constrained', sharey=True)
+    shown = []
+    for axes, path in zip(panels, ('avx512', 'avx2')):
+        for (colour, marker), kind in zip(plot_style.SERIES, ('boxes', 'spheres', 'triangles')):
+            for way, style, words in (('prepared_', '-', 'prepared ray'), ('', '--', 'call')):
+                counts = FEW[:-1] if way else FEW
+                times = [results.one(name=f'few/{way}{kind}/{path}/{n}')['nanoseconds'] * n for n in counts]
+                axes.plot(counts, times, style, marker=marker, color=colour, markersize=4, linewidth=1.2,
+                          label=f'{kind}, {words}')
+                shown += [way + kind, path, *(f'{time:.1f}' for time in times)]
+        axes.set_xscale('log', base=2)
+        axes.set_xticks(FEW, [str(n) for n in FEW])
+        axes.set_title(path, fontsize=9, loc='left')
+        axes.set_xlabel('primitives')
+    panels[0].set_ylim(bottom=0)
+    panels[0].set_ylabel('time [ns a call]')
+    legend_over(figure, panels[0], 6)
+    return finished(figure, 'One ray and few boxes, spheres or triangles: time of a call', ' '.join(shown))
 
 
 def sizes_chart(results):
@@ -175,4 +240,6 @@ def finished(figure, description, shown):
 
 # By picture: the kind of file, whose newest one it shows, and who draws it.
 CHARTS = {'rays': ('rays', rays_chart), 'roots': ('roots', roots_chart), 'lengths': ('lengths', lengths_chart),
-          'sizes': ('sizes', sizes_chart), 'cliffs': ('cliffs', cliffs_chart)}
+          'sizes': ('sizes', sizes_chart), 'cliffs': ('cliffs', cliffs_chart), 'short': ('short', short_chart),
+          'few': ('short', few_chart),
+          'other_roots': ('other_roots', other_roots_chart)}

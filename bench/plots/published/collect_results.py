@@ -3,7 +3,7 @@
 
 usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
 
-NAME begins with the machine's: MACHINES of results.py. The kinds cliffs and lengths have two files: of
+NAME begins with the machine's: MACHINES of results.py. The kinds cliffs, lengths and short have two files: of
 `raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
 """
 import json
@@ -34,7 +34,8 @@ KEYS = {
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
               'speed_of_rays')}
-KEYS['lengths'] = KEYS['cliffs']
+KEYS['lengths'] = KEYS['short'] = KEYS['cliffs']
+KEYS['other_roots'] = KEYS['roots']
 KEYS['calls'] = KEYS['exact'] = KEYS['skips'] = KEYS['rays']
 
 
@@ -67,8 +68,10 @@ def rows_of(content):
 
 
 def is_shown(kind, row):
-    if kind in ('cliffs', 'lengths'):
+    if kind in ('cliffs', 'lengths', 'short'):
         return 'nanoseconds' in row
+    if kind == 'other_roots':
+        return row['function'] != 'sqrt'
     if kind == 'kernels':
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
     if kind == 'parts':

@@ -3,8 +3,9 @@
 usage: measure.py BUILD_FOLDER [--only TABLE,…] [--scenes DIR] [--machine NAME] [--dry-run]
 
 TABLE is a name between the marks of docs/figures.md. Tables of one command are measured together: root_methods with
-roots, cliff_roots and short_roots with cliffs. skips and filters are lines of the first table. DIR has scenes.tsv and
-the meshes (default: RAYLANES_SCENES). NAME is the machine's in MACHINES of results.py (default: by the processor).
+roots, cliff_roots with cliffs. short_roots has the name short, and other_roots is a picture. skips and filters are
+lines of the first table. DIR has scenes.tsv and the meshes (default: RAYLANES_SCENES). NAME is the machine's in
+MACHINES of results.py (default: by the processor).
 --dry-run prints the commands.
 
 Each command's rows go to bench/results/, in place of older ones of this machine. Then the pages and charts are made
@@ -68,6 +69,10 @@ COMMANDS = {
                 '512x512 --seconds 0.6', each(SCENE=['bunny', 'sibenik', 'conference'])),
     'kernels': ('raylanes kernels --path all', each()),
     'roots': ('raylanes roots --path all --stride 1024 --seconds 20', each()),
+    'other_roots': ('raylanes roots --path all --stride 1024 --seconds 20', each()),
+    'short': ('raylanes_bench "--benchmark_filter=^(short|few)/" --benchmark_repetitions=9 '
+              '--benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true '
+              '--benchmark_min_time=0.02', each()),
     'lengths': ('raylanes_bench --benchmark_filter=^length/ --benchmark_repetitions=9 '
                 '--benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true '
                 '--benchmark_min_time=0.05', each()),
@@ -156,7 +161,7 @@ def compiler(build):
 
 def main():
     kinds = {**{kind: kind for kind in COMMANDS}, 'root_methods': 'roots', 'cliff_roots': 'cliffs',
-             'short_roots': 'cliffs'}
+             'short_roots': 'short'}
     parser = argparse.ArgumentParser(prog='bench/publish', description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS)
     parser.add_argument('build', type=pathlib.Path)

@@ -7,6 +7,8 @@ from rounds import error_text
 ACCURACIES = ('correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11')
 ROOT_SHARES = (0.0, 1e-4, 1e-3, 0.01, 0.05, 0.2, 1.0)
 ROOT_WAYS = ('instruction', 'correctly_rounded', 'within_1_ulp', 'within_2^-22', 'within_2^-11', 'reciprocal_root')
+SHORT_LENGTHS = (1, 2, 3, 4, 6, 8, 12, 15, 16, 17, 24, 31, 32, 33, 48, 64, 65, 96, 128, 192, 256, 512, 700, 1024, 2048,
+                 4096)
 ROOT_LENGTHS = (3072, 10_000, 30_000, 100_000, 300_000, 1_000_000, 4_000_000, 16_000_000)
 
 
@@ -44,10 +46,20 @@ def cliff_roots_table(results):
 
 
 def short_roots_table(results):
-    counts = (1, 2, 4, 8, 16, 32, 64)
-    lines = [[f'`{way}::sqrt`', *(f"{results.one(name=f'short/{way}/{n}')['nanoseconds'] * n:.1f}" for n in counts)]
-             for way in ('std', 'raylanes')]
-    return table(['ns a call, of floats', *(str(n) for n in counts)], lines)
+    counts = (1, 2, 4, 8, 16, 17, 32, 33, 64, 256, 1024)
+    lines = [[words, *(f'{time * n:.1f}' for n, time in zip(counts, short_times(results, way, counts)))]
+             for way, words in SHORT_WAYS.items()]
+    return table(['ns a call, of floats', *(f'{n:,}' for n in counts)], lines)
+
+
+# And their words.
+SHORT_WAYS = {'std': 'a loop of `std::sqrt`', 'raylanes': '`raylanes::sqrt`',
+              'std_reciprocal_root': 'a loop of `1 / std::sqrt`',
+              'reciprocal_root': '`raylanes::rsqrt` within 2 ULP'}
+
+
+def short_times(results, way, lengths=SHORT_LENGTHS):
+    return [results.one(name=f'short/{way}/{n}')['nanoseconds'] for n in lengths]
 
 
 def root_gains(results, way):

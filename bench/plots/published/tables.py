@@ -194,7 +194,7 @@ def cliffs_table(results):
 
 TABLES = {'sizes': ('sizes', sizes_table), 'parts': ('parts', parts_table), 'modes': ('modes', modes_table),
           'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
-          'short_roots': ('cliffs', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
+          'short_roots': ('short', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
           'roots': ('roots', roots.roots_table), 'lengths': ('lengths', roots.lengths_table),
           'root_methods': ('roots', roots.root_methods_table), 'kernels': ('kernels', kernels_table),

@@ -1,7 +1,13 @@
 // Google Benchmark rows of roots, triangles, boxes and spheres: the rows of `raylanes roots` and `raylanes kernels`,
 // named kernel/test_grade_form_query/path/size. A row whose decisions exact arithmetic finds wrong is an error, not a
-// time. Decisions are judged when the first row runs, so that --help and lists come at once.
+// time. Decisions are judged when the first row runs, so that --help and lists come at once. Rows
+// few/KIND/path/size are of one ray among few primitives.
 #include <benchmark/benchmark.h>
+
+#include <raylanes/boxes.hpp>
+#include <raylanes/prepared_ray.hpp>
+#include <raylanes/spheres.hpp>
+#include <raylanes/triangles.hpp>
 
 #include "../roots/benchmark_roots.hpp"
 #include "kernel_rows.hpp"
@@ -26,9 +32,42 @@ class KernelTimes {
            '_' + row.form + '_' + row.query + '/' + row.path->name + '/' + std::to_string(timed_primitives))
               .c_str(),
           [this, &row](benchmark::State& state) { run(state, row); });
+    for (const Path* path : paths) {
+      add_few("boxes", path, BoxArrays(), inputs_.boxes());
+      add_few("spheres", path, SphereArrays(), inputs_.spheres());
+      add_few("triangles", path, TriangleArrays(), inputs_.corners());
+    }
   }
 
  private:
+  // The nearest of few primitives, or which boxes are hit and where, by a prepared ray and by a call that checks it.
+  template <class Arrays>
+  void add_few(const std::string& kind, const Path* path, Arrays few, const ColumnList& columns) {
+    std::memcpy(&few, KernelInputs::pointers(columns).data(), columns.size() * sizeof(const float*));
+    const Ray ray = inputs_.ray();
+    for (const std::size_t n : {4u, 8u, 16u, 32u, 64u}) {
+      few.size = n;
+      const auto add = [&](const std::string& way, auto ask) {
+        benchmark::RegisterBenchmark(
+            ("few/" + way + kind + '/' + path->name + '/' + std::to_string(n)).c_str(),
+            [=](benchmark::State& state) { time_calls(state, n, [&] { benchmark::DoNotOptimize(ask()); }); });
+      };
+      const std::span entry(inputs_.output(0), n), exit(inputs_.output(1), n);
+      const std::span bits(inputs_.bits(), (n + 7) / 8);
+      if constexpr (std::is_same_v<Arrays, BoxArrays>)
+        add("", [=] { return intervals(ray, few, bits, entry, exit, {.path = path}), bits[0]; });
+      else
+        add("", [=] { return closest_hit(ray, few, {.path = path}); });
+      if (n > PreparedRay::max_primitives) continue;
+      add("prepared_", [=, prepared = PreparedRay(ray, path)] {
+        if constexpr (std::is_same_v<Arrays, BoxArrays>)
+          return hits(prepared, few, entry);
+        else
+          return closest_hit(prepared, few);
+      });
+    }
+  }
+
   void run(benchmark::State& state, const KernelRow& row) {
     if (!is_judged_) judgement_.judge(paths_, judged_pairs, [](double) {});
     is_judged_ = true;

@@ -1,5 +1,5 @@
-// Square roots of floats by the public calls: shares of zeros and of subnormal numbers, short arrays, and lengths from
-// the first-level cache to memory.
+// Square roots of floats by the public calls: shares of zeros and of subnormal numbers, and lengths from one number to
+// arrays in memory.
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -51,6 +51,20 @@ std::vector<BenchmarkCase> root_cliffs() {
                          [=, way = way, number = number](benchmark::State& state) {
                            take_roots(state, way, first_level_roots, share, number);
                          }});
+  return cases;
+}
+
+std::vector<BenchmarkCase> root_lengths() {
+  std::vector<BenchmarkCase> cases;
+  const auto add = [&](const std::string& name, Roots way, std::size_t n) {
+    cases.push_back(
+        {name + '/' + std::to_string(n), [=](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
+  };
+  for (const auto& [name, way] : square_roots)
+    for (const std::size_t n :
+         {3072u, 10'000u, 30'000u, 100'000u, 300'000u, 1'000'000u, 4'000'000u, 16'000'000u})
+      add(std::string("length/") + name, way, n);
+  // Calls that take few numbers inline, beside loops of the same program.
   const Way short_ways[] = {{"std",
                              [](std::span<const float> x, std::span<float> y) {
                                for (std::size_t i = 0; i < x.size(); ++i) y[i] = std::sqrt(x[i]);
@@ -64,20 +78,9 @@ std::vector<BenchmarkCase> root_cliffs() {
                                rsqrt(x, y, Accuracy::within_2_ulp);
                              }}};
   for (const auto& [name, way] : short_ways)
-    for (const std::size_t n : {1u, 2u, 4u, 8u, 15u, 16u, 17u, 24u, 32u, 48u, 64u, 65u})
-      cases.push_back({std::string("cliff/short/") + name + '/' + std::to_string(n),
-                       [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
-  return cases;
-}
-
-std::vector<BenchmarkCase> root_lengths() {
-  std::vector<BenchmarkCase> cases;
-  for (const auto& [name, way] : square_roots)
-    for (const std::size_t n :
-         {first_level_roots, std::size_t{10'000}, std::size_t{30'000}, std::size_t{100'000},
-          std::size_t{300'000}, std::size_t{1'000'000}, std::size_t{4'000'000}, std::size_t{16'000'000}})
-      cases.push_back({std::string("length/") + name + '/' + std::to_string(n),
-                       [=, way = way](benchmark::State& state) { take_roots(state, way, n, 0, 0); }});
+    for (const std::size_t n : {1u,  2u,  3u,  4u,  6u,  8u,   12u,  15u,  16u,  17u,  24u,   31u,   32u,
+                                33u, 48u, 64u, 65u, 96u, 128u, 192u, 256u, 512u, 700u, 1024u, 2048u, 4096u})
+      add(std::string("short/") + name, way, n);
   return cases;
 }
 
