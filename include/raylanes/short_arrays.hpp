@@ -186,8 +186,11 @@ inline bool taken(std::span<const T> x, std::span<T> y, Accuracy accuracy, std::
   return true;
 }
 
+// A call of the kernels takes the time of more vectors, if these are narrow.
+inline constexpr bool is_narrow = RAYLANES_VECTOR_BYTES == 16;
+
 inline bool sqrt_of_few(std::span<const float> x, std::span<float> y, Accuracy accuracy) {
-  return taken<Root<float>>(x, y, accuracy, 8);
+  return taken<Root<float>>(x, y, accuracy, is_narrow ? 12 : 8);
 }
 inline bool sqrt_of_few(std::span<const double> x, std::span<double> y, Accuracy accuracy) {
   return taken<Root<double>>(x, y, accuracy, accuracy == Accuracy::correctly_rounded ? 8 : 3);
@@ -199,7 +202,7 @@ inline bool reciprocal_of_few(std::span<const T> x, std::span<T> y, Accuracy acc
 inline bool rsqrt_of_few(std::span<const float> x, std::span<float> y, Accuracy accuracy) {
   if (accuracy == Accuracy::correctly_rounded) return taken<RoundedReciprocalRoot>(x, y, accuracy, 8);
   if (accuracy != Accuracy::within_1_ulp && accuracy != Accuracy::within_2_to_minus_44)
-    return taken<ReciprocalRoot<float>>(x, y, accuracy, 3);
+    return taken<ReciprocalRoot<float>>(x, y, accuracy, is_narrow ? 6 : 3);
 #if defined(__FMA__)
   return taken<CorrectedReciprocalRoot<float>>(x, y, accuracy, 2);
 #else

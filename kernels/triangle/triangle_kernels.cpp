@@ -74,9 +74,12 @@ class RayOverTriangles {
                             {F(among.shear[0]), F(among.shear[1])}, axes)) {
     take_numbers(triangles, axes);
   }
-  void take_numbers(Soa triangles, const Axes& axes) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = axis; k < Test::floats; k += 3) number_[k] = triangles[k - axis + axes.order[axis]];
+  void take_numbers(Soa triangles, [[maybe_unused]] const Axes& axes) {
+    if constexpr (std::is_same_v<Axes, StoredAxes>)
+      for (int k = 0; k < Test::floats; ++k) number_[k] = triangles[k];
+    else  // less code than by index()
+      for (int axis = 0; axis < 3; ++axis)
+        for (int k = axis; k < Test::floats; k += 3) number_[k] = triangles[k - axis + axes.order[axis]];
   }
   static Vec3<F> in_order(const Float3& v, const Axes& axes) {
     return {F(v[axes.order[0]]), F(v[axes.order[1]]), F(v[axes.order[2]])};
