@@ -75,9 +75,9 @@ class RayOverTriangles {
     take_numbers(triangles, axes);
   }
   void take_numbers(Soa triangles, [[maybe_unused]] const Axes& axes) {
-    if constexpr (std::is_same_v<Axes, StoredAxes>)
+    if constexpr (Test::id == TriangleTest::directional)  // all in registers
       for (int k = 0; k < Test::floats; ++k) number_[k] = triangles[k];
-    else  // less code than by index()
+    else  // less code
       for (int axis = 0; axis < 3; ++axis)
         for (int k = axis; k < Test::floats; k += 3) number_[k] = triangles[k - axis + axes.order[axis]];
   }
