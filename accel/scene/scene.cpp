@@ -124,8 +124,9 @@ class CallInTree {
   const CallRow* usual_ = nullptr;
   const ChosenCallRow* chosen_ = nullptr;
 };
-bool is_usual_and_walked(const SceneParts& scene, const TraceOptions& options) {
-  return options.test == TriangleTest::exact && is_walked(scene) && usual_row(options) != nullptr;
+// The row for trees of a scene that a ray walks through as calls without options do; null: another way.
+const CallRow* row_to_walk(const SceneParts& scene, const TraceOptions& options) {
+  return options.test == TriangleTest::exact && is_walked(scene) ? usual_row(options) : nullptr;
 }
 
 // A batch of few rays as the loop of calls. False if the batch is to go another way.
@@ -133,16 +134,17 @@ template <class Answer>
 bool trace_few(const SceneParts& scene, const RayView& rays, Answer* answers, std::size_t count,
                const TraceOptions& options, std::uint32_t mask) {
   const CommonTree* const tree = quick_tree(scene, mask);
-  if (tree == nullptr && (scene.has_others() || !is_usual_and_walked(scene, options))) return false;
   const FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
+  if (!few || (tree == nullptr ? scene.has_others() : few.may_be_packet())) return false;
   const CallInTree call(tree, options, rays.count);
-  if (!few || (tree != nullptr && (!call || few.may_be_packet()))) return false;
+  const CallRow* const row = tree == nullptr ? row_to_walk(scene, options) : nullptr;
+  if (!call && row == nullptr) return false;
   const Path& path = checked_path(options.path);
   few.trace([&](const Ray& ray, std::size_t i) -> Answer {
     if constexpr (std::is_same_v<Answer, SceneHit>)
       return call ? call.closest(ray, i) : walked_closest(scene, path, ray, mask);
     else
-      return call ? call.occluded(ray, i) : walked_occluded(scene, path, *usual_row(options), ray, mask);
+      return call ? call.occluded(ray, i) : walked_occluded(scene, path, *row, ray, mask);
   });
   return true;
 }
@@ -180,7 +182,7 @@ SceneHit Scene::closest(const Ray& ray) const {
 }
 SceneHit Scene::closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   if (const CallInTree call(quick_tree(parts(), mask), options); call) return call.closest(ray);
-  return is_usual_and_walked(parts(), options)
+  return row_to_walk(parts(), options) != nullptr
              ? walked_closest(parts(), checked_path(options.path), ray, mask)
              : closest_by_options(ray, options, mask);
 }
@@ -203,9 +205,9 @@ bool Scene::occluded(const Ray& ray) const {
 }
 bool Scene::occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   if (const CallInTree call(quick_tree(parts(), mask), options); call) return call.occluded(ray);
-  return is_usual_and_walked(parts(), options)
-             ? walked_occluded(parts(), checked_path(options.path), *usual_row(options), ray, mask)
-             : occluded_by_options(ray, options, mask);
+  const CallRow* const row = row_to_walk(parts(), options);
+  return row != nullptr ? walked_occluded(parts(), checked_path(options.path), *row, ray, mask)
+                        : occluded_by_options(ray, options, mask);
 }
 bool Scene::occluded_by_options(const Ray& ray, const TraceOptions& options, std::uint32_t mask) const {
   require_skip("scene", options.skip, 1);
