@@ -8,7 +8,7 @@
 #include "../simd/table_rows.hpp"
 #include "line.hpp"
 #include "perpendicular.hpp"
-#include "prepared_ray.hpp"
+#include "prepare_ray.hpp"
 #include "textbook.hpp"
 
 namespace raylanes {

@@ -42,7 +42,7 @@ MUTANTS = [
         ('sphere: an invalid single ray let through', 'if (!is_valid(ray)) prepared', 'if (false) prepared')),
     *rows_of('kernels/triangle/prepared_shear.hpp', 'test_boxes',
         ('prepared ray: two slopes are one', 'prepared.shear[1] = shear.y.raw;', 'prepared.shear[1] = shear.x.raw;')),
-    *rows_of('kernels/sphere/prepared_ray.hpp', 'test_boxes',
+    *rows_of('kernels/sphere/prepare_ray.hpp', 'test_boxes',
         ('prepared ray: an invalid one let through', 'if (!valid)', 'if (false)'),
         ('prepared ray: planes of negative directions', 'axis + 3 * (1 - is_negative)', 'axis + 3')),
     *rows_of('kernels/ray/valid_ray.hpp', 'test_boxes',
