@@ -6,11 +6,11 @@
 #include <string>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/numbers.hpp>
 #include <raylanes/rays.hpp>
 
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
-#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 

@@ -6,8 +6,7 @@
 #include <span>
 
 #include <raylanes/mesh.hpp>
-
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
 
 namespace raylanes {
 

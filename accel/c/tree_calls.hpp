@@ -8,7 +8,8 @@
 #include <istream>
 #include <ostream>
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "call.hpp"
 #include "options.hpp"
 #include "stream.hpp"

@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/progress.hpp>
-
-#include "../../dispatch/table/numbers.hpp"
 
 namespace raylanes {
 

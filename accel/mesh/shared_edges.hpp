@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <raylanes/mesh.hpp>
+#include <raylanes/numbers.hpp>
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/table/numbers.hpp"
 #include "pulse.hpp"
 
 namespace raylanes {

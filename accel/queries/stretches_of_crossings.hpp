@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/stretches.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../batch/ray_source.hpp"
 
 namespace raylanes {

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/points.hpp>
 #include <raylanes/traversal.hpp>
 
-#include "numbers.hpp"
 #include "rows.hpp"
 #include "tree_view.hpp"
 

@@ -1,7 +1,8 @@
 // Kernels for what is beyond the nearest hit: lists, the next hit, visits of leaves.
 #pragma once
 
-#include "numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "traversal.hpp"
 
 namespace raylanes {

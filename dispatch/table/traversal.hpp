@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <iterator>
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/scene_hit.hpp>
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangles.hpp>
 
-#include "numbers.hpp"
 #include "rows.hpp"
 #include "tree_view.hpp"
 

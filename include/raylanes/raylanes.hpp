@@ -10,6 +10,7 @@
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
 #include <raylanes/mesh.hpp>
+#include <raylanes/numbers.hpp>
 #include <raylanes/paths.hpp>
 #include <raylanes/points.hpp>
 #include <raylanes/prepared_ray.hpp>

@@ -4,7 +4,8 @@
 #include <bit>
 #include <limits>
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../../dispatch/table/points.hpp"
 #include "point_triangle.hpp"
 

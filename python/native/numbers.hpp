@@ -1,12 +1,11 @@
-// The types of calls of trees by the number of the trees, beside the plain data of dispatch/table/numbers.hpp.
+// The types of calls of trees by the number of the trees, beside the plain data of <raylanes/numbers.hpp>.
 #pragma once
 
 #include <type_traits>
 
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
-
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
 
 namespace raylanes::python {
 

@@ -1,7 +1,8 @@
 // Trees of C and of C++ over one mesh, and options as both take them, to compare what calls write.
 #pragma once
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../doubles/double_cases.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"

@@ -1,9 +1,9 @@
 // The C interface with any arguments: rays and meshes of any bits, null pointers, strides and sizes that are too small
 // or too large, options of any values and sizes, damaged files. Right arguments give the bytes of the classes; wrong
 // ones are refused, and nothing is written.
+#include <raylanes/numbers.hpp>
 #include <raylanes/roots.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../support/same_bytes.hpp"
 #include "any_arguments.hpp"
 #include "queries.hpp"

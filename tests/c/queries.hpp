@@ -4,7 +4,8 @@
 
 #include <tuple>
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "calls.hpp"
 
 namespace raylanes::testing {

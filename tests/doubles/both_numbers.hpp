@@ -2,8 +2,8 @@
 #pragma once
 
 #include <raylanes/doubles.hpp>
+#include <raylanes/numbers.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "double_cases.hpp"
 
 namespace raylanes::testing {

@@ -1,7 +1,8 @@
 // Checks of fuzzed queries of rays and points, in trees over meshes of floats or of doubles.
 #pragma once
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../queries/summed_winding.hpp"
 #include "../support/limited_memory.hpp"
 #include "any_passages.hpp"

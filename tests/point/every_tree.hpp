@@ -1,9 +1,9 @@
 // Closest points of floats and doubles by every tree: by all builders, on every path, in batches and alone.
 #pragma once
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/raylanes.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_point_cases.hpp"
 #include "../support/soa.hpp"
 #include "../support/supported_paths.hpp"

@@ -1,8 +1,8 @@
 // Closest points of batches by trees: the bytes of points one by one, however a batch lies, and less work.
+#include <raylanes/numbers.hpp>
 #include <raylanes/raylanes.hpp>
 
 #include "../../accel/queries/closest_points.hpp"
-#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_cases.hpp"
 #include "../support/float_modes.hpp"
 #include "../support/guarded_array.hpp"

@@ -1,6 +1,7 @@
 // Winding numbers of meshes of floats and of doubles: against solid angles of all triangles, and by what must hold
 // exactly.
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../doubles/both_numbers.hpp"
 #include "chord_meshes.hpp"
 #include "open_meshes.hpp"

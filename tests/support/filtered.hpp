@@ -1,7 +1,8 @@
 // Filters in every form of call: batches of records and of arrays, segments from a point, single rays.
 #pragma once
 
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../traverse/reference/segment_to.hpp"
 #include "same_bytes.hpp"
 

@@ -1,8 +1,8 @@
 // Particles through cells that share their faces, aimed at corners and edges: none is lost, and none goes in circles,
 // if exits are taken from crossings(), as docs/crossings.md says.
 #include <raylanes/doubles.hpp>
+#include <raylanes/numbers.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../support/level.hpp"
 #include "../support/meshes.hpp"
 #include "../support/random_input.hpp"

@@ -1,8 +1,8 @@
 // Histories of particles within a solid, aimed at its corners and edges, where they turn: none is lost and none stays
 // where it is, if each leg begins at a point that locate() finds inside, as docs/crossings.md says.
 #include <raylanes/doubles.hpp>
+#include <raylanes/numbers.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_cases.hpp"
 #include "../support/level.hpp"
 #include "../support/meshes.hpp"

@@ -2,9 +2,9 @@
 // numbers.
 #include <gmpxx.h>
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/stretches.hpp>
 
-#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/double_cases.hpp"
 #include "../kdtree/kd_trees.hpp"
 #include "../support/supported_paths.hpp"

@@ -1,8 +1,9 @@
 // Trees of floats and of doubles for tests of refits, and all that queries say of them.
 #pragma once
 
+#include <raylanes/numbers.hpp>
+
 #include "../../bench/support/oracles/exact_rays.hpp"
-#include "../../dispatch/table/numbers.hpp"
 #include "../doubles/both_numbers.hpp"
 #include "both_trees.hpp"
 

@@ -4,9 +4,9 @@
 #include <mutex>
 
 #include <raylanes/closed_mesh.hpp>
+#include <raylanes/numbers.hpp>
 
 #include "../../accel/batch/in_parallel.hpp"
-#include "../../dispatch/table/numbers.hpp"
 #include "../support/reports.hpp"
 #include "both_trees.hpp"
 

@@ -3,11 +3,11 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
+#include <raylanes/numbers.hpp>
 #include <raylanes/scene.hpp>
 
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../../bench/support/scenes/shapes.hpp"
-#include "../../dispatch/table/numbers.hpp"
 #include "../support/filtered.hpp"
 #include "../support/random_input.hpp"
 #include "../support/supported_paths.hpp"

@@ -1,5 +1,6 @@
 // Meshes, batches, threads and paths that a tree of either kind refuses.
-#include "../../dispatch/table/numbers.hpp"
+#include <raylanes/numbers.hpp>
+
 #include "../support/message_of.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <raylanes/doubles.hpp>
+#include <raylanes/numbers.hpp>
 
-#include "../../../dispatch/table/numbers.hpp"
 #include "../std.hpp"
 
 namespace raylanes::oracle {

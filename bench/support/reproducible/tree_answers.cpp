@@ -3,8 +3,8 @@
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
 #include <raylanes/kdtree.hpp>
+#include <raylanes/numbers.hpp>
 
-#include "../../../dispatch/table/numbers.hpp"
 #include "fixed_rays.hpp"
 
 namespace raylanes::bench {

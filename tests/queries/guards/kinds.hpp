@@ -2,10 +2,10 @@
 #pragma once
 
 #include <raylanes/doubles.hpp>
+#include <raylanes/numbers.hpp>
 #include <raylanes/scene.hpp>
 #include <raylanes/sphere_tree.hpp>
 
-#include "../../../dispatch/table/numbers.hpp"
 #include "../../doubles/double_cases.hpp"
 #include "../query_trees.hpp"
 

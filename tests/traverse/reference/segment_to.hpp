@@ -1,9 +1,9 @@
 // The ray of a shadow.
 #pragma once
 
+#include <raylanes/numbers.hpp>
 #include <raylanes/rays.hpp>
 
-#include "../../../dispatch/table/numbers.hpp"
 #include "../../support/testing.hpp"
 
 namespace raylanes::testing {
