@@ -4,7 +4,7 @@ import math
 from plot_style import SERIES, Tooltips, legend_above, panel
 from rounds import error_text
 
-GROUPS = [('classic_', 'bit trick + 0 … 3 Newton steps', 2), ('hardware', 'hardware instruction', 1)]
+GROUPS = [('classic_', 'bit trick and Newton steps', 2), ('hardware', 'hardware instruction', 1)]
 
 
 def nanoseconds(row):

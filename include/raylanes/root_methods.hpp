@@ -22,32 +22,23 @@
 namespace raylanes {
 
 /// Methods of √a in floats. s is the approximation, y that of 1/sqrt(a), u = 2^-24.
-///   classic_N       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then N times s = (s + a/s)/2 (Heron).
-///   polynomial_2    no division: y from bits 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010), s = a y,
-///                   w = s y, then s P(w) with P the minimax polynomial of degree 2 of 1/sqrt(w).
-///   estimate        s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE + FRSQRTS 2^-15.9).
-///   estimate_residual          s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
-///   estimate_two_residuals     s + (a − s²) y/2, and again with the same y.
+///   classic_2       bits(s) = 2^29 + (bits(a) >> 1) − 2^22 − 0x4C000, then twice s = (s + a/s)/2 (Heron).
 ///   goldschmidt     one step that refines s and y/2 side by side, then a residual (Goldschmidt 1964, Markstein
 ///                   2004): correctly rounded for every estimate within 2^-14, as all of them show; within 1.5·2^-12
 ///                   for all floats but 17 and their multiples by powers of 4, which are tried before the first call:
 ///                   it is the hardware's root where one of them fails, and without fused multiply-add.
 ///   hardware        the instruction: correctly rounded.
-///   …_beside_hardware   the same, but some registers of every block go to the hardware's divider, which is idle
-///                   otherwise. A value may get the method's root or the correctly rounded one, depending on its
-///                   place.
+///   …_beside_hardware   some registers of every block take the method, the others the hardware's divider, which is
+///                   idle otherwise. A value may get the method's root or the correctly rounded one, depending on its
+///                   place. The methods are goldschmidt and:
+///     estimate      s = a y with the instruction's y (rsqrtps 1.5·2^-12, rsqrt14ps 2^-14, FRSQRTE + FRSQRTS 2^-15.9).
+///     estimate_residual        s + s (1/2 − s y/2), one step whose one-sided error is shifted to both sides.
+///     estimate_two_residuals   s + (a − s²) y/2, and again with the same y.
 ///   estimate_unchecked  estimate for positive normal numbers alone: what it makes of others is not defined (NaN, an
 ///                   infinity or a number). For arrays that are known to hold no others, and to compare with
 ///                   libraries that ask for that.
 enum class SqrtMethod : std::uint8_t {
-  classic_0,
-  classic_1,
   classic_2,
-  classic_3,
-  polynomial_2,
-  estimate,
-  estimate_residual,
-  estimate_two_residuals,
   goldschmidt,
   hardware,
   estimate_beside_hardware,
@@ -58,8 +49,6 @@ enum class SqrtMethod : std::uint8_t {
 };
 
 /// Methods of 1/√a in floats. y is the approximation of 1/√a.
-///   quake_2         y from bits 0x5F3759DF − (bits(a) >> 1) and two steps y (1.5 − (a/2) y²) (Walsh, Moler).
-///   kadlec          0x5F1FFFF9 and one step 0.703952253 y (2.38924456 − a y²) (Kadlec 2010).
 ///   estimate        the instruction.
 ///   estimate_newton the instruction and one Newton step, whose one-sided error is shifted to both sides.
 ///   corrected       and a step whose residual 1 − a y² is exact but for its last bits: the rounding error of a y is
@@ -67,15 +56,7 @@ enum class SqrtMethod : std::uint8_t {
 ///   hardware        1/sqrt(a), both rounded.
 ///   in_double       1/sqrt(a) in double, rounded to float: correctly rounded, which all 2^32 inputs prove (on every
 ///                   path the same operations).
-enum class RsqrtMethod : std::uint8_t {
-  quake_2,
-  kadlec,
-  estimate,
-  estimate_newton,
-  corrected,
-  hardware,
-  in_double
-};
+enum class RsqrtMethod : std::uint8_t { estimate, estimate_newton, corrected, hardware, in_double };
 
 /// Methods of 1/a in floats. y is the approximation of 1/a.
 ///   estimate           the instruction (rcpps 1.5·2^-12, rcp14ps 2^-14, FRECPE and FRECPS 2^-16.8).
@@ -86,14 +67,15 @@ enum class ReciprocalMethod : std::uint8_t { estimate, estimate_newton, estimate
 
 /// Methods of √a in doubles, as for floats: the constants are at the same relative place, and estimates are made of the
 /// significand as a float.
+///   classic_N          as classic_2, with N steps.
+///   polynomial_2       no division: y from bits as for floats 0x5F1FFE00 − (bits(a) >> 1) (Lomont 2003, Kadlec 2010),
+///                      s = a y, w = s y, then s P(w) with P the minimax polynomial of degree 2 of 1/sqrt(w).
 ///   goldschmidt        as for floats, the first step shifted as in estimate_newton, or of third order if the estimate
 ///                      has 12 bits: not proved to be correctly rounded.
 enum class DoubleSqrtMethod : std::uint8_t {
   classic_0,
   classic_1,
   classic_2,
-  classic_3,
-  classic_4,
   polynomial_2,
   estimate,
   estimate_residual,
@@ -139,15 +121,8 @@ struct RootMethodInfo {
 };
 
 /// The promises of each SqrtMethod, by enumerator.
-inline constexpr std::array<RootMethodInfo<SqrtMethod>, 15> sqrt_methods{{
-    {SqrtMethod::classic_0, {"classic_0", true, 408334.0, 408334.0}},
-    {SqrtMethod::classic_1, {"classic_1", true, 6795.0, 6795.0}},
+inline constexpr std::array<RootMethodInfo<SqrtMethod>, 8> sqrt_methods{{
     {SqrtMethod::classic_2, {"classic_2", true, 2.694, 2.694}},
-    {SqrtMethod::classic_3, {"classic_3", true, 0.7505, 0.7505}},
-    {SqrtMethod::polynomial_2, {"polynomial_2", true, 254.0, 254.0}},
-    {SqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
-    {SqrtMethod::estimate_residual, {"estimate_residual", false, 3.9, 4.4}},
-    {SqrtMethod::estimate_two_residuals, {"estimate_two_residuals", false, 0.51, 1.1}},
     {SqrtMethod::goldschmidt, {"goldschmidt", true, 0.5, 0.5}},
     {SqrtMethod::hardware, {"hardware", true, 0.5, 0.5}},
     {SqrtMethod::estimate_beside_hardware, {"estimate_beside_hardware", false, 6145.0, 6145.0}},
@@ -159,9 +134,7 @@ inline constexpr std::array<RootMethodInfo<SqrtMethod>, 15> sqrt_methods{{
 }};
 
 /// The promises of each RsqrtMethod, by enumerator.
-inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 7> rsqrt_methods{{
-    {RsqrtMethod::quake_2, {"quake_2", true, 80.0, 80.0}},
-    {RsqrtMethod::kadlec, {"kadlec", true, 10920.0, 10920.0}},
+inline constexpr std::array<RootMethodInfo<RsqrtMethod>, 5> rsqrt_methods{{
     {RsqrtMethod::estimate, {"estimate", false, 6145.0, 6145.0}},
     {RsqrtMethod::estimate_newton, {"estimate_newton", false, 3.6, 4.1}},
     {RsqrtMethod::corrected, {"corrected", false, 0.50001, 0.5}},
@@ -178,7 +151,7 @@ inline constexpr std::array<RootMethodInfo<ReciprocalMethod>, 4> reciprocal_meth
 }};
 
 // Doubles cannot be tried exhaustively. The error of a bit trick repeats in every other binade: for classic_0 to
-// classic_3 and polynomial_2 the bound is the largest error found on 6·10^7 numbers in [1, 4) in extended precision,
+// classic_2 and polynomial_2 the bound is the largest error found on 6·10^7 numbers in [1, 4) in extended precision,
 // rounded up; roundings of double add less than one ULP. The other bounds follow from ε <= 1.5·2^-12 + 2^-24, the
 // relative error of an estimate by way of float:
 //   estimate                 ε·2^53
@@ -188,12 +161,10 @@ inline constexpr std::array<RootMethodInfo<ReciprocalMethod>, 4> reciprocal_meth
 //   estimate_residual of a reciprocal   1/a (1 − ε²); estimate_two_residuals ε⁴, and 1.5 for roundings
 //   corrected                0.5, the error of the residual, at most 2^-75, and 1.5 δ² of what comes before
 /// The promises of each DoubleSqrtMethod, by enumerator.
-inline constexpr std::array<RootMethodInfo<DoubleSqrtMethod>, 10> double_sqrt_methods{{
+inline constexpr std::array<RootMethodInfo<DoubleSqrtMethod>, 8> double_sqrt_methods{{
     {DoubleSqrtMethod::classic_0, {"classic_0", true, 2.193e14, 2.193e14}},
     {DoubleSqrtMethod::classic_1, {"classic_1", true, 3.648e12, 3.648e12}},
     {DoubleSqrtMethod::classic_2, {"classic_2", true, 1.044e9, 1.044e9}},
-    {DoubleSqrtMethod::classic_3, {"classic_3", true, 99.3, 99.3}},
-    {DoubleSqrtMethod::classic_4, {"classic_4", true, 0.7505, 0.7505}},
     {DoubleSqrtMethod::polynomial_2, {"polynomial_2", true, 1.3482e11, 1.3482e11}},
     {DoubleSqrtMethod::estimate, {"estimate", false, 3.3e12, 3.3e12}},
     {DoubleSqrtMethod::estimate_residual, {"estimate_residual", false, 1.82e9, 1.82e9}},

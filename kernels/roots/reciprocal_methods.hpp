@@ -18,28 +18,6 @@ struct ReciprocalRootBase : RootMethodBase {
   }
 };
 
-template <int Steps>
-struct Quake : ReciprocalRootBase {
-  static constexpr RsqrtMethod id = RsqrtMethod::quake_2;  // with two steps
-  template <class V>
-  static V apply(const V& a) {
-    V y = reciprocal_root_trick<0x5F3759DFu>(a);
-    for (int i = 0; i < Steps; ++i) y = y * (constant<V>(1.5) - (constant<V>(0.5) * a * y) * y);
-    return y;
-  }
-  template <class T>
-  static constexpr T least = min_normal<T> * 2;  // a/2 is normal
-};
-
-struct Kadlec : ReciprocalRootBase {
-  static constexpr RsqrtMethod id = RsqrtMethod::kadlec;
-  template <class V>
-  static V apply(const V& a) {
-    const V y = reciprocal_root_trick<0x5F1FFFF9u>(a);
-    return constant<V>(0.703952253f) * y * (constant<V>(2.38924456f) - a * y * y);
-  }
-};
-
 // Infinity has the estimate 0, as it should.
 struct ReciprocalRootEstimate : ReciprocalRootBase {
   static constexpr RsqrtMethod id = RsqrtMethod::estimate;

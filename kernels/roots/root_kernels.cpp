@@ -12,7 +12,7 @@ namespace {
 // for 16, during which the two multipliers do 8 to 22 operations: the share of the divider follows from the
 // operations of the method. Chosen by measurement on Zen 3 for 4 and 8 lanes, by counting for 16.
 inline constexpr bool is_wide = native_lanes == 16;
-inline constexpr Mix ones{1, 0, 8}, twos{2, 0, 4}, threes{3, 0, 2}, fours{4, 0, 2}, eight{8, 0, 1};
+inline constexpr Mix ones{1, 0, 8}, twos{2, 0, 4}, threes{3, 0, 2}, eight{8, 0, 1};
 inline constexpr Mix estimate_mix{4, 1, 2};
 inline constexpr Mix residual_mix = is_wide ? Mix{4, 1, 2} : Mix{2, 1, 2};
 inline constexpr Mix two_residuals_mix = is_wide ? Mix{3, 1, 2} : has_fma ? Mix{3, 2, 1} : Mix{2, 2, 2};
@@ -34,24 +34,6 @@ constexpr Row<float, std::remove_const_t<decltype(M::id)>> floats() {
 template <class M, Mix mix>
 constexpr Row<double, std::remove_const_t<decltype(M::double_id)>> doubles() {
   return {M::double_id, array_of<M, double, mix>};
-}
-
-// The enumerator of a method with registers beside it in the divider.
-constexpr SqrtMethod beside(SqrtMethod method) {
-  switch (method) {
-    case SqrtMethod::estimate:
-      return SqrtMethod::estimate_beside_hardware;
-    case SqrtMethod::estimate_residual:
-      return SqrtMethod::estimate_residual_beside_hardware;
-    case SqrtMethod::estimate_two_residuals:
-      return SqrtMethod::estimate_two_residuals_beside_hardware;
-    default:
-      return SqrtMethod::goldschmidt_beside_hardware;
-  }
-}
-template <class M, Mix mix>
-constexpr Row<float, SqrtMethod> floats_beside() {
-  return {beside(M::id), array_of<M, float, mix>};
 }
 
 // Without fused multiply-add these texts are the hardware's: the plain loop is that without the test.
@@ -76,25 +58,16 @@ constexpr ArrayFunction<float> corrected() {
 }
 
 constexpr Row<float, SqrtMethod> sqrt_rows[] = {
-    floats<Classic<0>, ones>(),
-    floats<Classic<1>, ones>(),
     floats<Classic<2>, ones>(),
-    floats<Classic<3>, ones>(),
-    floats<Polynomial, threes>(),
-    floats<Estimate, eight>(),
-    floats<EstimateResidual<1>, twos>(),
-    floats<EstimateResidual<2>, threes>(),
     {Goldschmidt::id, goldschmidt<twos>()},
     {Hardware::id, plain_array_of<Hardware, float>},
-    floats_beside<Estimate, estimate_mix>(),
-    floats_beside<EstimateResidual<1>, residual_mix>(),
-    floats_beside<EstimateResidual<2>, two_residuals_mix>(),
-    {beside(Goldschmidt::id), goldschmidt<goldschmidt_mix>()},
+    floats<Estimate, estimate_mix>(),
+    floats<EstimateResidual<1>, residual_mix>(),
+    floats<EstimateResidual<2>, two_residuals_mix>(),
+    {SqrtMethod::goldschmidt_beside_hardware, goldschmidt<goldschmidt_mix>()},
     {SqrtMethod::estimate_unchecked, plain_array_of<Estimate, float, 8>},
 };
 constexpr Row<float, RsqrtMethod> rsqrt_rows[] = {
-    floats<Quake<2>, fours>(),
-    floats<Kadlec, threes>(),
     floats<ReciprocalRootEstimate, eight>(),
     floats<ReciprocalRootNewton, twos>(),
     {ReciprocalRootCorrected::id, corrected()},
@@ -109,8 +82,7 @@ constexpr Row<float, ReciprocalMethod> reciprocal_rows[] = {
 };
 constexpr Row<double, DoubleSqrtMethod> double_sqrt_rows[] = {
     doubles<Classic<0>, ones>(),        doubles<Classic<1>, ones>(),
-    doubles<Classic<2>, ones>(),        doubles<Classic<3>, ones>(),
-    doubles<Classic<4>, ones>(),        doubles<Polynomial, threes>(),
+    doubles<Classic<2>, ones>(),        doubles<Polynomial, threes>(),
     doubles<ScaledEstimate, threes>(),  doubles<ScaledEstimateResidual, threes>(),
     doubles<ScaledGoldschmidt, twos>(), {Hardware::double_id, plain_array_of<Hardware, double>},
 };

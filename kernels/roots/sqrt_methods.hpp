@@ -25,7 +25,7 @@ inline V heron_step(const V& s, const V& a) {
 
 template <int Steps>
 struct Classic : RootMethodBase {
-  static constexpr SqrtMethod id = behind(SqrtMethod::classic_0, Steps);  // up to 3
+  static constexpr SqrtMethod id = SqrtMethod::classic_2;  // with two steps
   static constexpr DoubleSqrtMethod double_id = behind(DoubleSqrtMethod::classic_0, Steps);
   template <class V>
   static V apply(const V& a) {
@@ -36,27 +36,15 @@ struct Classic : RootMethodBase {
   static constexpr bool right_for_infinity = Steps == 1;  // one step more divides infinities
 };
 
-inline constexpr double polynomial_coefficients[] = {2.10242974, -1.76111696, 0.663271599};
-
-// The root by a polynomial of these coefficients, and with it the reciprocal root.
-template <int Terms, class V>
-inline V polynomial_root(const double (&c)[Terms], const V& a, V& y) {
-  const V seed = reciprocal_root_trick<0x5F1FFE00u>(a);
-  const V s = a * seed;
-  const V w = s * seed;
-  V p = constant<V>(c[Terms - 1]);
-  for (int i = Terms - 2; i >= 0; --i) p = p * w + constant<V>(c[i]);
-  y = seed * p;
-  return s * p;
-}
-
 struct Polynomial : RootMethodBase {
-  static constexpr SqrtMethod id = SqrtMethod::polynomial_2;
   static constexpr DoubleSqrtMethod double_id = DoubleSqrtMethod::polynomial_2;
   template <class V>
   static V apply(const V& a) {
-    V y;
-    return polynomial_root(polynomial_coefficients, a, y);
+    const V seed = reciprocal_root_trick<0x5F1FFE00u>(a);
+    const V s = a * seed;
+    const V w = s * seed;
+    const V p = constant<V>(0.663271599) * w + constant<V>(-1.76111696);
+    return s * (p * w + constant<V>(2.10242974));
   }
   static constexpr bool right_for_infinity = true;  // the leading coefficient is positive
 };
@@ -79,7 +67,7 @@ inline V residual_step(const V& s, const V& half_y, const V& a) {
 // Zero, infinity, NaN and negative numbers give NaN; subnormals infinity where the instruction takes them for
 // zeros, as rsqrtps does and rsqrt14ps does not.
 struct Estimate : RootMethodBase {
-  static constexpr SqrtMethod id = SqrtMethod::estimate;
+  static constexpr SqrtMethod id = SqrtMethod::estimate_beside_hardware;
   static constexpr bool keeps_nan = true;
   static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel =
@@ -101,7 +89,7 @@ struct Estimate : RootMethodBase {
 
 template <int Steps>
 struct EstimateResidual : ResidualBase {
-  static constexpr SqrtMethod id = behind(SqrtMethod::estimate_residual, Steps - 1);
+  static constexpr SqrtMethod id = behind(SqrtMethod::estimate_residual_beside_hardware, Steps - 1);
   static constexpr bool keeps_nan = true;
   static constexpr bool takes_zeros = true;
   static constexpr std::uint32_t max_sentinel = max_half_estimate(least<float>);

@@ -194,7 +194,7 @@ void check_replaced_by_the_instruction() {
     EXPECT_EQ(kept_method(roots, method), SqrtMethod::hardware);
   }
   roots.sqrt.within[0] = SqrtMethod::goldschmidt_beside_hardware;
-  EXPECT_EQ(kept_method(roots, SqrtMethod::estimate), SqrtMethod::estimate);
+  EXPECT_EQ(kept_method(roots, SqrtMethod::classic_2), SqrtMethod::classic_2);
   const Path& front = paths().front();
   const KernelTable kernels = with_roots(kernels_of(front), roots);
   const Path path =

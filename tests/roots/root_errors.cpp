@@ -41,11 +41,11 @@ TEST(RootFunctions, refuse_accuracies_and_methods_that_do_not_exist) {
             "sqrt: accuracy 8 does not exist; allowed are 0 to 7");
   EXPECT_EQ((refusal<double, Accuracy>(reciprocal, static_cast<Accuracy>(255))),
             "reciprocal: accuracy 255 does not exist; allowed are 0 to 7");
-  EXPECT_EQ((refusal<float, SqrtMethod>(sqrt, static_cast<SqrtMethod>(15))),
-            "sqrt: method 15 does not exist; allowed are 0 to 14");
+  EXPECT_EQ((refusal<float, SqrtMethod>(sqrt, static_cast<SqrtMethod>(8))),
+            "sqrt: method 8 does not exist; allowed are 0 to 7");
   EXPECT_NE((refusal<float, RsqrtMethod>(rsqrt, static_cast<RsqrtMethod>(rsqrt_methods.size()))), "");
   EXPECT_NE((refusal<float, ReciprocalMethod>(reciprocal, static_cast<ReciprocalMethod>(4))), "");
-  EXPECT_NE((refusal<double, DoubleSqrtMethod>(sqrt, static_cast<DoubleSqrtMethod>(10))), "");
+  EXPECT_NE((refusal<double, DoubleSqrtMethod>(sqrt, static_cast<DoubleSqrtMethod>(8))), "");
   EXPECT_NE((refusal<double, DoubleRsqrtMethod>(rsqrt, static_cast<DoubleRsqrtMethod>(5))), "");
   EXPECT_NE((refusal<double, DoubleReciprocalMethod>(reciprocal, static_cast<DoubleReciprocalMethod>(4))),
             "");

@@ -98,10 +98,11 @@ TEST(RootSurvey, counts_correct_rounding_among_positive_numbers) {
   for (const Judged& j : all_judged()) {
     EXPECT_LT(j.accuracy.positive_inputs, j.accuracy.inputs);
     EXPECT_GE(j.accuracy.positive_inputs, j.accuracy.inputs / 3) << j.name();
-    if (j.row.promise().name == "classic_0") {
-      // Subnormals go to the instruction.
+    // Rounds 62 % of normal numbers correctly. Subnormals go to the instruction.
+    if (j.row.promise().name == "classic_2") {
       const std::uint64_t others = j.accuracy.positive_inputs - j.accuracy.normal_inputs;
-      EXPECT_LT((j.accuracy.positive_correctly_rounded - others) * 100, j.accuracy.normal_inputs) << j.name();
+      EXPECT_LT((j.accuracy.positive_correctly_rounded - others) * 3, j.accuracy.normal_inputs * 2)
+          << j.name();
     }
     if (j.row.promise().max_ulp == 0.5) {
       EXPECT_EQ(j.accuracy.positive_correctly_rounded, j.accuracy.positive_inputs) << j.name();

@@ -57,19 +57,13 @@ BOUNDS = {'correctly rounded': (0.5, 'right'), '1 ULP': (1.0, 'center'), '2^-22'
           '2^-16': (256.0, 'center'), '2^-11': (8192.0, 'center'), '2^-4': (2.0**20, 'center')}
 NAMES = {'goldschmidt_beside_hardware': ('goldschmidt\nbeside the divider', (-7, -1), 'right'),
          'estimate_residual_beside_hardware': ('one residual\nbeside the divider', (-19, -10), 'right'),
-         'estimate_beside_hardware': ('estimate\nbeside the divider', (4, -29), 'left'),
-         'polynomial_3': ('polynomial_3', (5, -2), 'left'), 'polynomial_1': ('polynomial_1', (5, -9), 'left'),
-         'classic_0': ('bit trick, no Newton step', (5, -12), 'right'),
-         'classic_1': ('bit trick, 1 Newton step', (16, -2), 'left'),
-         'classic_2': ('bit trick, 2 Newton steps', (13, 14), 'left'),
-         'classic_3': ('bit trick,\n3 Newton steps', (-14, 0), 'right'),
+         'estimate_beside_hardware': ('estimate\nbeside the divider', (4, -21), 'left'),
+         'classic_2': ('bit trick, 2 Newton steps', (7, -2), 'left'),
          'hardware': ("the processor's\ninstruction", (-7, -5), 'right')}
 
 
 def name_methods(axes, rows):
-    """Names beside the marks of one path, and a line through the bit trick and its Newton steps."""
-    steps = [rows[f'classic_{n}'] for n in range(4)]
-    axes.plot([row['max_ulp'] for row in steps], [row['nanoseconds'] for row in steps], ':', color=INK, linewidth=1)
+    """Names beside the marks of one path."""
     for method, (name, offset, side) in NAMES.items():
         axes.annotate(name, (rows[method]['max_ulp'], rows[method]['nanoseconds']), offset, ha=side,
                       textcoords='offset points', fontsize=7)

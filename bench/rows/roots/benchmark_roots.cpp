@@ -55,13 +55,6 @@ void run_row(benchmark::State& state, const Subject<T>& subject, std::size_t n) 
   time_calls(state, n, [&] { subject.function(x, y, n); });
 }
 
-void run_latency(benchmark::State& state, const RootChain& chain) {
-  constexpr std::size_t length = 4096;
-  // The fixed point of x = sqrt(x) + 1.
-  if (std::fabs(chain.run(2.0f, length) - 2.618034f) > 0.2f) return state.SkipWithError("wrong root");
-  time_calls(state, length, [&] { benchmark::DoNotOptimize(chain.run(2.0f, length)); });
-}
-
 template <class T>
 void add_row(const std::string& name, const Subject<T>& subject) {
   // In and out: first-level cache, second, third, memory.
@@ -98,18 +91,14 @@ void add_rows_of(const Path& path) {
   add_methods("double_sqrt", path, roots.double_sqrt, double_sqrt_methods, root);
   add_methods("double_rsqrt", path, roots.double_rsqrt, double_rsqrt_methods, reciprocal_root);
   add_methods("double_reciprocal", path, roots.double_reciprocal, double_reciprocal_methods, inverse);
-  const CourseRoots& course = of_path(path, all_course_roots);
-  for (std::size_t i = 0; i < course.count; ++i)
-    add_row(std::string("sqrt/") + course.rows[i].name + '/' + path.name,
-            Subject<float>{course.rows[i].run, root, sqrt_methods[i % 4].promise.max_ulp});
+  constexpr RootPromise classic = sqrt_methods[static_cast<std::size_t>(SqrtMethod::classic_2)].promise;
+  for (const CourseRoot& form : of_path(path, all_course_roots).form)
+    add_row(std::string("sqrt/") + form.name + '/' + path.name,
+            Subject<float>{form.run, root, classic.max_ulp});
   const RootProbe& probe = of_path(path, all_probes);
   for (std::size_t i = 0; i < probe.contender_count; ++i)
     add_row(std::string("sqrt/") + probe.contenders[i].name + '/' + path.name,
             Subject<float>{probe.contenders[i].run, root, probe.contenders[i].max_ulp});
-  for (std::size_t i = 0; i < probe.chain_count; ++i)
-    benchmark::RegisterBenchmark(
-        (std::string("sqrt_latency/") + probe.chains[i].method + '/' + path.name).c_str(),
-        [&chain = probe.chains[i]](benchmark::State& state) { run_latency(state, chain); });
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // The rows of roots in raylanes_bench, and of what is hardest: cliff/CASE/… Each is named in the tables of
 // benchmark_cliffs.cpp and benchmark_root_cliffs.cpp. Rows length/ACCURACY/N are square roots of arrays of N floats,
 // rows short/WAY/N roots of few.
-// sqrt/METHOD/PATH/SIZE, rsqrt/… and so on are throughput, sqrt_latency/METHOD/PATH is latency.
-// sqrt/classic_N_FORM/PATH/SIZE has the forms of the course report. sqrt/LIBRARY_OPERATION/PATH/SIZE has other
+// sqrt/METHOD/PATH/SIZE, rsqrt/… and so on are throughput.
+// sqrt/classic_2_FORM/PATH/SIZE has the forms of the course report. sqrt/LIBRARY_OPERATION/PATH/SIZE has other
 // libraries with the instructions of PATH.
 #pragma once
 

@@ -1,6 +1,6 @@
 // The classic root in the other forms of the course report, compiled once per path beside the kernels: one value after
 // another, four values written out in the body of the loop, and arrays of four handled by inner loops that the
-// compiler may vectorise. To be timed against the kernels, whose bits they give. Plain C types only.
+// compiler may vectorise. To be timed against the kernel, whose bits they give. Plain C types only.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,11 @@ namespace raylanes::bench {
 
 struct CourseRoot {
   const char* name;
-  const char* method;  // of sqrt_methods, with the same bits
   void (*run)(const float* x, float* y, std::size_t n);
 };
 
 struct CourseRoots {
-  const CourseRoot* rows;
-  std::size_t count;
+  CourseRoot form[3];
 };
 
 }  // namespace raylanes::bench

@@ -1,8 +1,7 @@
 // Compiled once per path with the flags and the back end of its kernels.
 #include "root_probe.hpp"
 
-#include "../../../kernels/roots/domain_check.hpp"
-#include "../../support/roots/contender_methods.hpp"
+#include "../../../kernels/simd/vocabulary.hpp"
 
 #if defined(RAYLANES_BACKEND_XSIMD)
 #include <sleef.h>
@@ -10,34 +9,6 @@
 
 namespace raylanes {
 namespace {
-
-template <class M>
-float chain(float x, std::size_t n) {
-  using V = Lanes<float, native_lanes>;
-  V a(x);
-  for (std::size_t i = 0; i < n; ++i) a = root_of<M>(a) + V(1.0f);
-  float out[native_lanes];
-  a.store(out);
-  return out[0];
-}
-
-constexpr bench::RootChain chains[] = {{"classic_0", chain<Classic<0>>},
-                                       {"classic_1", chain<Classic<1>>},
-                                       {"classic_2", chain<Classic<2>>},
-                                       {"classic_3", chain<Classic<3>>},
-                                       {"weighted_1", chain<Weighted<1>>},
-                                       {"weighted_2", chain<Weighted<2>>},
-                                       {"halley", chain<Halley>},
-                                       {"polynomial_1", chain<OtherPolynomial<linear_coefficients>>},
-                                       {"polynomial_2", chain<Polynomial>},
-                                       {"polynomial_3", chain<OtherPolynomial<cubic_coefficients>>},
-                                       {"polynomial_2_residual", chain<PolynomialResidual>},
-                                       {"estimate", chain<Estimate>},
-                                       {"estimate_newton", chain<EstimateNewton>},
-                                       {"estimate_residual", chain<EstimateResidual<1>>},
-                                       {"estimate_two_residuals", chain<EstimateResidual<2>>},
-                                       {"goldschmidt", chain<Goldschmidt>},
-                                       {"hardware", chain<Hardware>}};
 
 // Left to the compiler, which may make vectors of it.
 void plain_loop(const float* x, float* y, std::size_t n) {
@@ -122,7 +93,7 @@ namespace detail {
 
 extern constinit const bench::RootProbe RAYLANES_PROBE_OF(RAYLANES_PATH_NAME);
 constinit const bench::RootProbe RAYLANES_PROBE_OF(RAYLANES_PATH_NAME) = {
-    chains, sizeof(chains) / sizeof(chains[0]), contenders, sizeof(contenders) / sizeof(contenders[0])};
+    contenders, sizeof(contenders) / sizeof(contenders[0])};
 
 }  // namespace detail
 }  // namespace raylanes

@@ -1,17 +1,9 @@
-// Code that benchmarks compile once per path beside the kernels: chains of dependent roots, for latency, and roots of
-// other libraries with the same instructions. It has plain C types only, as the kernel table does.
+// Roots of other libraries, compiled once per path with the same instructions as the kernels. Plain C types only.
 #pragma once
 
 #include <cstddef>
 
 namespace raylanes::bench {
-
-// Repeats x = root(x) + 1 `n` times in one register and returns lane 0. The addition's latency is in the
-// time.
-struct RootChain {
-  const char* method;  // a name in sqrt_methods or sqrt_contenders
-  float (*run)(float x, std::size_t n);
-};
 
 // A loop that a user of another library would write: whole registers, no test for special values. n is a
 // multiple of 64.
@@ -22,8 +14,6 @@ struct RootContender {
 };
 
 struct RootProbe {
-  const RootChain* chains;
-  std::size_t chain_count;
   const RootContender* contenders;
   std::size_t contender_count;
 };

@@ -7,18 +7,9 @@
 #include "../../../dispatch/hardest_roots.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
 #include "../../../dispatch/table/roots.hpp"
-#include "../rulers/of_path.hpp"
-#include "root_contenders.hpp"
 #include "root_judge.hpp"
 
 namespace raylanes {
-
-// Defined in the objects of root_contenders.cpp; the build lists the paths.
-namespace detail {
-#define RAYLANES_DECLARE(path) extern const bench::RootContenders path##_root_contenders;
-RAYLANES_EACH_PATH(RAYLANES_DECLARE)
-}  // namespace detail
-
 namespace bench {
 namespace {
 
@@ -158,27 +149,14 @@ auto with_rows(RootFunction function, const Path& path, F f) {
   return f(roots.reciprocal, reciprocal_methods);
 }
 
-std::size_t library_count(RootFunction function) {
-  return with_rows(function, paths().front(),
-                   [](const auto&, const auto& methods) { return methods.size(); });
-}
-std::span<const RootPromise> contenders_of(RootFunction function) {
-  if (function == RootFunction::sqrt) return sqrt_contenders;
-  if (function == RootFunction::rsqrt) return rsqrt_contenders;
-  return {};
-}
-
-#define RAYLANES_CONTENDERS(path) &detail::path##_root_contenders,
-const RootContenders* const all_contenders[] = {RAYLANES_EACH_PATH(RAYLANES_CONTENDERS)};
-
 }  // namespace
 
 std::size_t method_count(RootFunction function) {
-  return library_count(function) + contenders_of(function).size();
+  return with_rows(function, paths().front(),
+                   [](const auto&, const auto& methods) { return methods.size(); });
 }
 
 const RootPromise& promise_of(RootFunction function, std::size_t method) {
-  if (method >= library_count(function)) return contenders_of(function)[method - library_count(function)];
   return *with_rows(function, paths().front(),
                     [&](const auto&, const auto& methods) { return &methods[method].promise; });
 }
@@ -190,11 +168,6 @@ std::size_t method_within(RootFunction function, Accuracy accuracy, const Path& 
 }
 
 ArrayFunction<float> RootRow::kernel() const {
-  if (method >= library_count(function)) {
-    const RootContenders& contenders = of_path(*path, all_contenders);
-    const std::size_t i = method - library_count(function);
-    return function == RootFunction::sqrt ? contenders.sqrt[i] : contenders.rsqrt[i];
-  }
   return with_rows(function, *path, [&](const auto& rows, const auto&) { return rows.by[method]; });
 }
 

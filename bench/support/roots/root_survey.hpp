@@ -15,8 +15,7 @@ inline std::string name_of(RootFunction function) {
   return std::string(root_function_names[static_cast<std::size_t>(function)]);
 }
 
-// The methods of a function, in the order of its enumeration, and the contenders behind them; and its method that
-// serves an accuracy on a path.
+// The methods of a function, in the order of its enumeration, and its method that serves an accuracy on a path.
 std::size_t method_count(RootFunction function);
 const RootPromise& promise_of(RootFunction function, std::size_t method);
 std::size_t method_within(RootFunction function, Accuracy accuracy, const Path& path);
