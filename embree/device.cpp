@@ -15,12 +15,13 @@ void keep_first(RTCError& first, RTCError code) {
   if (first == RTC_ERROR_NONE) first = code;
 }
 
-// "threads=4,isa=avx2". Other words are ignored. All ISA paths return the same bytes, so that `isa` is too; the
-// environment variable RAYLANES_PATH chooses one.
+// "threads=4,isa=avx2". With "unsupported=empty" commits do not report what is not supported. Other words are ignored,
+// `isa` too: all ISA paths return the same bytes. The environment variable RAYLANES_PATH chooses one.
 void configure(Device& device, std::string_view text) {
   while (!text.empty()) {
     const std::string word(text.substr(0, text.find(',')));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (word.find("unsupported=empty") != std::string::npos) device.takes_unsupported = true;
     const std::size_t key = word.find("threads"), equals = word.find('=');
     if (key != std::string::npos && key < equals && equals != std::string::npos &&
         word.find_first_not_of(" \t\n") == key)

@@ -36,9 +36,11 @@ bool exists(RTCGeometryType type) {
 
 void commit(Geometry& geometry) {
   ++geometry.version, geometry.is_dirty = false;
-  require_allowed(geometry.is_supported(),
+  const bool takes_all = geometry.device->takes_unsupported;
+  require_allowed(takes_all || geometry.is_supported(),
                   "curves and subdivision surfaces are not supported: this geometry is empty");
-  require_allowed(geometry.time_steps == 1, "motion blur is not supported: the first time step is used");
+  require_allowed(takes_all || geometry.time_steps == 1,
+                  "motion blur is not supported: the first time step is used");
   if (!geometry.is_mesh()) return;
   const BufferView* vertices = geometry.find(RTC_BUFFER_TYPE_VERTEX);
   for (const auto& [kind, view] : geometry.buffers)

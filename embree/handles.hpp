@@ -82,6 +82,7 @@ struct Device : Counted {
   RTCMemoryMonitorFunction memory_function = nullptr;
   void* memory_user = nullptr;
   int threads = 0;  // 0: the caller's oneTBB arena
+  bool takes_unsupported = false;
 
   void fail(RTCError code, const char* text);
   // Tells the monitor; throws if it refuses more memory.

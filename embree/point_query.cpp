@@ -1,6 +1,7 @@
 // rtcPointQuery: a callback for each primitive near a point, which may shrink the radius.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -36,6 +37,28 @@ Space instance_space(const Geometry& instance, const RTCPointQuery& query) {
     is_similar = is_similar && is_about(length[c], length[0]) && is_about(product[c], 0);
   if (is_similar) space.scale = static_cast<float>(std::sqrt(length[0]));
   return space;
+}
+
+// Triangle i spans box i, enlarged so that it has an area. Boxes that no ray visits are left out as points.
+bool is_visited(const raylanes::Box& box) {
+  const auto is_finite = [](float x) { return std::isfinite(x); };
+  return !is_empty(box) && std::ranges::all_of(box.lo, is_finite) && std::ranges::all_of(box.hi, is_finite);
+}
+raylanes::Bvh tree_of_boxes(const std::vector<raylanes::Box>& boxes) {
+  std::vector<Float3> corners;
+  std::vector<raylanes::Index3> triangles;
+  for (const raylanes::Box& box : boxes) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    triangles.push_back({first, first + 1, first + 2});
+    Float3 lo{}, hi{};
+    for (std::size_t k = 0; k < 3 && is_visited(box); ++k) {
+      const float margin = 0x1p-20f * std::max(std::abs(box.lo[k]), std::abs(box.hi[k])) + 0x1p-100f;
+      constexpr float end = std::numeric_limits<float>::max();
+      lo[k] = std::max(box.lo[k] - margin, -end), hi[k] = std::min(box.hi[k] + margin, end);
+    }
+    corners.insert(corners.end(), {lo, hi, {hi[0], lo[1], lo[2]}});
+  }
+  return raylanes::Bvh(corners, triangles);
 }
 
 class Search {
@@ -87,8 +110,9 @@ class Search {
       if (function != nullptr && function(&arguments)) has_changed_ = true;
   }
 
-  void visit_triangles(const Built& built, const Space& space) {
-    const raylanes::BvhView tree = std::as_const(*built.mesh).view();
+  // Calls visit(primitive) for the near primitives of a tree, nearer ones first.
+  template <class Visit>
+  void walk(const raylanes::BvhView& tree, const Space& space, Visit&& visit) {
     struct Child {
       double distance;
       raylanes::TreeReference reference;
@@ -102,7 +126,7 @@ class Search {
             static_cast<double>(query_.radius) * static_cast<double>(query_.radius) * (1 + 1e-6)))
         continue;
       if (raylanes::refers_to_leaf(child.reference)) {
-        visit_leaf(built, space, tree.leaves[raylanes::leaf_of(child.reference).block]);
+        visit_leaf(space, tree.leaves[raylanes::leaf_of(child.reference).block], visit);
         continue;
       }
       const raylanes::WideNode& node = tree.nodes[child.reference];
@@ -118,33 +142,37 @@ class Search {
                 [](const Child& a, const Child& b) { return a.distance > b.distance; });
     }
   }
-  void visit_leaf(const Built& built, const Space& space, const raylanes::LeafBlock<9>& leaf) {
-    const Face* last = nullptr;
+  template <class Visit>
+  void visit_leaf(const Space& space, const raylanes::LeafBlock<9>& leaf, Visit&& visit) {
     for (std::size_t k = 0; k < raylanes::tree_width; ++k) {
-      if (leaf.primitive[k] >= built.faces.size()) continue;
+      if (leaf.primitive[k] == raylanes::no_primitive) continue;
       Float3 lo, hi;
       for (std::size_t a = 0; a < 3; ++a)
         std::tie(lo[a], hi[a]) =
             std::minmax({leaf.number[a][k], leaf.number[3 + a][k], leaf.number[6 + a][k]});
-      if (!is_near(space, lo, hi)) continue;
-      const Face& face = built.faces[leaf.primitive[k]];
-      const Part& part = built.parts[face.part];
-      // A quad or a grid is asked about once a leaf, if its triangles are neighbours.
-      const bool is_again = last != nullptr && last->part == face.part && last->primitive == face.primitive;
-      last = &face;
-      if (!is_again) ask(part, face.primitive, space.scale);
+      if (is_near(space, lo, hi)) visit(leaf.primitive[k]);
     }
   }
 
+  void visit_triangles(const Built& built, const Space& space) {
+    const Face* last = nullptr;
+    walk(std::as_const(*built.mesh).view(), space, [&](std::uint32_t triangle) {
+      const Face& face = built.faces[triangle];
+      // A quad or a grid is asked about once if its triangles follow one another.
+      const bool is_again = last != nullptr && last->part == face.part && last->primitive == face.primitive;
+      last = &face;
+      if (!is_again) ask(built.parts[face.part], face.primitive, space.scale);
+    });
+  }
   void visit_things(const Built& built, const Space& space) {
-    for (std::size_t i = 0; i < built.things.size(); ++i) {
+    if (built.things.empty()) return;
+    std::call_once(built.is_box_tree_made, [&] { built.box_tree = tree_of_boxes(built.boxes); });
+    walk(std::as_const(built.box_tree).view(), space, [&](std::uint32_t i) {
       const Thing& thing = built.things[i];
       const Part& part = built.parts[thing.part];
-      const raylanes::Box& box = built.boxes[i];
-      if (is_empty(box) || !is_near(space, box.lo, box.hi)) continue;
       if (part.geometry->is_user()) ask(part, thing.primitive, space.scale);
       if (thing.instanced != nullptr && context_.instStackSize == 0) visit_instance(part, *thing.instanced);
-    }
+    });
   }
   void visit_instance(const Part& part, const Built& of) {
     const Geometry& instance = *part.geometry;

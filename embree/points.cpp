@@ -13,13 +13,15 @@ double dot(const double (&a)[3], const double (&b)[3]) {
 }  // namespace
 
 PointHits hits_of_point(const Geometry& geometry, std::uint32_t primitive, const RTCRay& ray) {
-  const auto* ball = geometry.find(RTC_BUFFER_TYPE_VERTEX)->at<float>(primitive);
+  PointHits hits{};
+  const BufferView& vertices = *geometry.find(RTC_BUFFER_TYPE_VERTEX);
+  if (primitive >= vertices.count) return hits;  // a smaller buffer since the commit
+  const auto* ball = vertices.at<float>(primitive);
   const double to_centre[3] = {static_cast<double>(ball[0]) - static_cast<double>(ray.org_x),
                                static_cast<double>(ball[1]) - static_cast<double>(ray.org_y),
                                static_cast<double>(ball[2]) - static_cast<double>(ray.org_z)};
   const double direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
   const double squared_radius = static_cast<double>(ball[3]) * static_cast<double>(ball[3]);
-  PointHits hits{};
   const auto add = [&](double t, double x, double y, double z) {
     if (!(t >= static_cast<double>(ray.tnear) && t <= static_cast<double>(ray.tfar))) return;
     hits.hit[hits.count++] = {static_cast<float>(t),

@@ -1,6 +1,7 @@
 // rtcIntersect… and rtcOccluded…: single rays, packets and streams.
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "trace.hpp"
 
@@ -8,7 +9,9 @@ namespace embree {
 namespace {
 
 constexpr float minus_infinity = -std::numeric_limits<float>::infinity();
-constexpr std::size_t most_in_batch = std::size_t{1} << 17, fewest_in_batch = 16;
+constexpr std::size_t most_in_batch = std::size_t{1} << 17, most_in_packet = 512;
+// Fewer rays are traced as single ones. Rays that are said to be coherent go as a packet from 16 on.
+constexpr std::size_t fewest_in_batch = 32, fewest_coherent = 16;
 constexpr int words_of_ray = 12, words_of_both = 20;  // 32-bit numbers of RTCRay and RTCRayHit
 static_assert(sizeof(RTCRayHit) / 4 >= words_of_both && offsetof(RTCRayHit, hit) == 4 * words_of_ray);
 
@@ -51,6 +54,19 @@ class Rays {
   Locate locate_;
 };
 
+bool is_coherent(const RTCIntersectContext* context) {
+  return (context->flags & RTC_INTERSECT_CONTEXT_FLAG_COHERENT) != 0;
+}
+
+// Whether neighbours among the coherent rays of this thread's last call mostly met the same triangle. Otherwise small
+// packets lose against single rays.
+thread_local bool are_dense = true;
+void note_density(std::span<const raylanes::SceneHit> hits) {
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < hits.size(); ++i) changes += hits[i].primitive != hits[i - 1].primitive;
+  are_dense = 4 * changes <= hits.size();
+}
+
 // Many rays that no callback sees, as batches of raylanes.
 template <class Locate>
 void trace_batch(const Built& built, const RTCIntersectContext* context, const Rays<Locate>& rays,
@@ -59,8 +75,10 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
   thread_local std::vector<raylanes::SceneHit> hits;
   thread_local std::vector<std::uint8_t> occluded;
   raylanes::TraceOptions options;
-  if ((context->flags & RTC_INTERSECT_CONTEXT_FLAG_COHERENT) != 0)
+  if (is_coherent(context)) {
     options.hint = raylanes::BatchHint::coherent;
+    if (are_dense && rays.size() <= most_in_packet) options.mode = raylanes::TraversalMode::packet;
+  }
   for (std::size_t begin = 0; begin < rays.size(); begin += most_in_batch) {
     const std::size_t size = std::min(most_in_batch, rays.size() - begin);
     copies.resize(size);
@@ -75,6 +93,7 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
     }
     hits.resize(size);
     built.placed.closest(copies, hits, options, mask);
+    note_density(hits);
     for (std::size_t i = 0; i < size; ++i)
       if (const raylanes::SceneHit& found = hits[i]) {
         RTCHit hit;
@@ -101,7 +120,8 @@ void trace_single(const Built& built, RTCIntersectContext* context, const Rays<L
 
 template <class Locate>
 void trace(const Built& built, RTCIntersectContext* context, const Rays<Locate>& rays) {
-  if (rays.size() >= fewest_in_batch && uses_placed(built, context) && built.other_count == 0) {
+  const std::size_t fewest = is_coherent(context) ? fewest_coherent : fewest_in_batch;
+  if (rays.size() >= fewest && uses_placed(built, context) && built.other_count == 0 && built.ball.empty()) {
     const unsigned mask = rays.mask(0);
     bool is_same = true;
     for (std::size_t i = 1; i < rays.size() && is_same; ++i) is_same = rays.mask(i) == mask;
@@ -111,14 +131,20 @@ void trace(const Built& built, RTCIntersectContext* context, const Rays<Locate>&
     if (rays.is_active(i)) trace_single(built, context, rays, i);
 }
 
-// A call of many rays, `first` of which is not null.
+// A call with rays, `first` of which is not null. It holds no reference: a scene outlives its calls.
+template <class Trace>
+void on_scene(RTCScene handle, const RTCIntersectContext* context, const void* first, Trace&& trace_in) {
+  const Scene* const scene = of(handle);
+  guarded(scene == nullptr ? nullptr : scene->device.get(), [&] {
+    require_some(scene, context, first);
+    trace_in(*scene->built);
+  });
+}
 template <class Locate>
 void on_rays(RTCScene handle, RTCIntersectContext* context, const void* first, std::size_t size,
              bool with_hits, const int* valid, Locate locate) {
-  on(handle, [&](Scene& scene) {
-    require_some(context, first);
-    trace(*scene.built, context, Rays<Locate>(size, with_hits, valid, locate));
-  });
+  on_scene(handle, context, first,
+           [&](const Built& built) { trace(built, context, Rays<Locate>(size, with_hits, valid, locate)); });
 }
 
 // Packets of `lanes` rays, one array per word in each, `stride` bytes from one packet to the next.
@@ -163,19 +189,15 @@ void on_arrays(RTCScene handle, RTCIntersectContext* context, const void* first,
 using namespace embree;
 
 RTC_API void rtcIntersect1(RTCScene handle, RTCIntersectContext* context, RTCRayHit* ray) {
-  Scene* const scene = of(handle);
-  guarded(scene == nullptr ? nullptr : scene->device.get(), [&] {
-    require_some(scene, context, ray);
-    if (ray->ray.tnear <= ray->ray.tfar) trace_closest(*scene->built, context, *ray);
+  on_scene(handle, context, ray, [&](const Built& built) {
+    if (ray->ray.tnear <= ray->ray.tfar) trace_closest(built, context, *ray);
   });
 }
 RTC_API void rtcOccluded1(RTCScene handle, RTCIntersectContext* context, RTCRay* ray) {
-  Scene* const scene = of(handle);
-  guarded(scene == nullptr ? nullptr : scene->device.get(), [&] {
-    require_some(scene, context, ray);
+  on_scene(handle, context, ray, [&](const Built& built) {
     if (!(ray->tnear <= ray->tfar)) return;
     const float far = ray->tfar;
-    ray->tfar = trace_occluded(*scene->built, context, *ray) ? minus_infinity : far;
+    ray->tfar = trace_occluded(built, context, *ray) ? minus_infinity : far;
   });
 }
 RTC_API void rtcIntersect4(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit4* rays) {

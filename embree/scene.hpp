@@ -18,6 +18,7 @@ namespace embree {
 struct Part {
   Ref<Geometry> geometry;
   unsigned id;
+  bool is_in_balls = false;
 };
 
 // A triangle of a mesh, by its index in the tree: what a hit needs besides t, u and v. Half a cache line.
@@ -45,7 +46,14 @@ struct Placement {
   unsigned id;
 };
 
-// One tree of all triangles, and one of the boxes of all things. Instances of scenes that have meshes alone are in
+// A sphere of `balls`.
+struct Ball {
+  raylanes::Sphere sphere;
+  unsigned geometry, primitive;
+};
+
+// One tree of all triangles, one of spheres of one mask that no filter asks about, and one of the boxes of all other
+// things. Instances of scenes that have meshes alone are in
 // a raylanes::Scene besides, where rays walk through them without callbacks.
 struct Built {
   Ref<Device> device;
@@ -63,11 +71,18 @@ struct Built {
   bool has_placed_instances = false;
   bool is_unmasked = true;  // whether all masks in `placed` have all bits
 
+  raylanes::SphereTree balls;
+  std::vector<Ball> ball;  // of `balls`
+  unsigned ball_mask = ~0u;
+
   std::vector<Thing> things;         // placed instances come last
   std::vector<raylanes::Box> boxes;  // of `things`
   std::size_t other_count = 0;       // things before the placed instances
   raylanes::BoundedTree others;
   raylanes::BoundedTree others_and_placed;  // empty if nothing is placed
+  // For point queries: a tree whose nodes can be read, of triangles with the boxes of all things. Made by the first.
+  mutable std::once_flag is_box_tree_made;
+  mutable raylanes::Bvh box_tree;
 
   std::vector<std::shared_ptr<const Built>> instanced;  // what things and placements refer to
   bool is_robust = false;                               // the scene's flag
@@ -80,6 +95,7 @@ struct Built {
   Built(const Built&) = delete;
   Built& operator=(const Built&) = delete;
 
+  bool has_others() const { return !things.empty() || !ball.empty(); }
   const raylanes::BoundedTree& tree_of_all() const {
     return has_placed_instances ? others_and_placed : others;
   }

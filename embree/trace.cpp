@@ -6,6 +6,20 @@
 namespace embree {
 namespace {
 
+// A ray as its caller passes it: with a hit where the nearest one is asked for.
+template <bool nearest>
+using Traced = std::conditional_t<nearest, RTCRayHit, RTCRay>;
+RTCRay& ray_in(RTCRayHit& both) {
+  return both.ray;
+}
+RTCRay& ray_in(RTCRay& ray) {
+  return ray;
+}
+// In the space of an instance, which ray and context are in meanwhile.
+template <bool nearest>
+bool trace_instance(const Built& built, const Thing& thing, RTCIntersectContext* context,
+                    Traced<nearest>& both);
+
 // Calls the filters of geometry and context, which may change ray and hit.
 bool passes(RTCFilterFunctionN own, void* user, bool asks_context, RTCIntersectContext* context, RTCRay& ray,
             RTCHit& hit) {
@@ -31,7 +45,8 @@ bool keeps(const Built& built, const Geometry& geometry, RTCIntersectContext* co
 
 // Asks masks and filters about triangles in the walk, each of which would be the nearest so far.
 template <bool nearest>
-bool find_filtered(const Built& built, RTCIntersectContext* context, RTCRay& ray, RTCHit& hit) {
+bool find_filtered(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
+  RTCRay& ray = ray_in(both);
   const raylanes::Ray whole = ray_of(ray, built.is_robust);
   const float far = ray.tfar;
   float kept = far;
@@ -40,7 +55,9 @@ bool find_filtered(const Built& built, RTCIntersectContext* context, RTCRay& ray
     put_face(built, found.primitive, found.u, found.v, context->instID[0], candidate);
     const Geometry& geometry = *built.parts[built.faces[found.primitive].part].geometry;
     const bool is_kept = keeps<nearest>(built, geometry, context, ray, found.t, candidate);
-    if (is_kept) kept = std::exchange(ray.tfar, far), hit = candidate;
+    if (is_kept) kept = std::exchange(ray.tfar, far);
+    if constexpr (nearest)
+      if (is_kept) both.hit = candidate;
     return !is_kept;
   };
   bool is_hit;
@@ -52,12 +69,123 @@ bool find_filtered(const Built& built, RTCIntersectContext* context, RTCRay& ray
   return is_hit;
 }
 
-// Traces in the space of an instance, which ray and context are in meanwhile.
-template <class Inner>
-void within(const Built& built, const Thing& thing, RTCIntersectContext* context, RTCRay& ray,
-            Inner&& inner) {
-  if (context->instID[0] != RTC_INVALID_GEOMETRY_ID) return;  // one level
+template <bool nearest>
+bool find_point(const Built& built, const Thing& thing, RTCIntersectContext* context, Traced<nearest>& both) {
   const Part& part = built.parts[thing.part];
+  const PointHits hits = hits_of_point(*part.geometry, thing.primitive, ray_in(both));
+  for (int k = 0; k < hits.count; ++k) {
+    const auto& [t, n] = hits.hit[k];
+    RTCHit candidate{n[0], n[1], n[2], 0, 0, thing.primitive, part.id, {context->instID[0]}};
+    if (!keeps<nearest>(built, *part.geometry, context, ray_in(both), t, candidate)) continue;
+    if constexpr (nearest) both.hit = candidate;
+    return true;
+  }
+  return false;
+}
+
+// Asks a function of a user geometry, which sets tfar and the hit if there is one.
+template <class RaysN, class Arguments, class Both>
+bool ask_user(void (*function)(const Arguments*), const Built& built, const Thing& thing,
+              RTCIntersectContext* context, Both& both) {
+  if (function == nullptr) return false;
+  const Part& part = built.parts[thing.part];
+  const float far = ray_in(both).tfar;
+  int valid = -1;
+  const UserArguments<Arguments> arguments{
+      {&valid, part.geometry->user, thing.primitive, context, reinterpret_cast<RaysN*>(&both), 1, part.id},
+      part.geometry.get(),
+      built.asks_context};
+  function(&arguments);
+  return ray_in(both).tfar < (std::is_same_v<Both, RTCRay> ? 0 : far);
+}
+
+template <bool nearest>
+bool visit(const Built& built, const Thing& thing, RTCIntersectContext* context, Traced<nearest>& both) {
+  const Geometry& geometry = *built.parts[thing.part].geometry;
+  if ((geometry.mask & ray_in(both).mask) == 0) return false;
+  if (thing.instanced != nullptr) return trace_instance<nearest>(built, thing, context, both);
+  if (!geometry.is_user()) return find_point<nearest>(built, thing, context, both);
+  if constexpr (nearest)
+    return ask_user<RTCRayHitN>(geometry.intersect, built, thing, context, both);
+  else
+    return ask_user<RTCRayN>(geometry.occluded, built, thing, context, both);
+}
+
+template <bool nearest>
+[[gnu::noinline]] bool visit_things(const Built& built, const raylanes::BoundedTree& tree,
+                                    RTCIntersectContext* context, Traced<nearest>& both) {
+  const auto test = [&](const raylanes::LeafVisit& leaf) {
+    const std::uint32_t primitive = leaf.primitives[0];  // the only one
+    if (visit<nearest>(built, built.things[primitive], context, both))
+      leaf.keep(leaf.rays[0], {ray_in(both).tfar, 0, 0, primitive});
+  };
+  const raylanes::Ray whole = ray_of(ray_in(both), true);
+  if constexpr (nearest)
+    return static_cast<bool>(tree.closest(whole, test));
+  else
+    return tree.occluded(whole, test);
+}
+
+template <bool nearest>
+bool find_placed(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
+  if (built.placements.empty()) return false;
+  RTCRay& ray = ray_in(both);
+  const raylanes::Ray whole = ray_of(ray, built.is_robust);
+  const bool has_all = built.is_unmasked && ray.mask != 0;
+  if constexpr (nearest) {
+    const raylanes::SceneHit found =
+        has_all ? built.placed.closest(whole) : built.placed.closest(whole, {}, ray.mask);
+    if (!found) return false;
+    ray.tfar = found.t;
+    put_placed(built, found, context->instID[0], both.hit);
+    return true;
+  } else {
+    return has_all ? built.placed.occluded(whole) : built.placed.occluded(whole, {}, ray.mask);
+  }
+}
+
+template <bool nearest>
+bool find_ball(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
+  RTCRay& ray = ray_in(both);
+  if (built.ball.empty() || (built.ball_mask & ray.mask) == 0) return false;
+  const raylanes::Ray whole = ray_of(ray, true);
+  if constexpr (nearest) {
+    const raylanes::Hit found = built.balls.closest(whole);
+    if (!found) return false;
+    const Ball& ball = built.ball[found.primitive];
+    float normal[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      normal[k] = whole.origin[k] - ball.sphere.centre[k] + found.t * whole.direction[k];
+    ray.tfar = found.t;
+    both.hit = {normal[0], normal[1], normal[2], 0, 0, ball.primitive, ball.geometry, {context->instID[0]}};
+    return true;
+  } else {
+    return built.balls.occluded(whole);
+  }
+}
+
+// Traces what a scene has besides meshes that no callback wants to know of.
+template <bool nearest>
+[[gnu::noinline]] bool trace_parts(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
+  const bool is_placed = uses_placed(built, context);
+  const raylanes::BoundedTree& rest = is_placed ? built.others : built.tree_of_all();
+  bool is_hit = false;
+  if (is_placed)
+    is_hit = find_placed<nearest>(built, context, both);
+  else if (!built.faces.empty())
+    is_hit = find_filtered<nearest>(built, context, both);
+  if (is_hit && !nearest) return true;
+  is_hit = find_ball<nearest>(built, context, both) || is_hit;
+  if (is_hit && !nearest) return true;
+  return (rest.size() != 0 && visit_things<nearest>(built, rest, context, both)) || is_hit;
+}
+
+template <bool nearest>
+bool trace_instance(const Built& built, const Thing& thing, RTCIntersectContext* context,
+                    Traced<nearest>& both) {
+  if (context->instID[0] != RTC_INVALID_GEOMETRY_ID) return false;  // one level
+  const Part& part = built.parts[thing.part];
+  RTCRay& ray = ray_in(both);
   const RTCRay outside = ray;
   const double origin[3] = {ray.org_x, ray.org_y, ray.org_z},
                direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
@@ -69,129 +197,30 @@ void within(const Built& built, const Thing& thing, RTCIntersectContext* context
   ray.dir_x = static_cast<float>(d[0]), ray.dir_y = static_cast<float>(d[1]),
   ray.dir_z = static_cast<float>(d[2]);
   context->instID[0] = part.id;
-  inner(*thing.instanced);
+  bool is_hit;
+  if constexpr (nearest)
+    is_hit = trace_closest(*thing.instanced, context, both);
+  else
+    is_hit = trace_occluded(*thing.instanced, context, both);
   context->instID[0] = RTC_INVALID_GEOMETRY_ID;
   ray.org_x = outside.org_x, ray.org_y = outside.org_y, ray.org_z = outside.org_z;
   ray.dir_x = outside.dir_x, ray.dir_y = outside.dir_y, ray.dir_z = outside.dir_z;
-}
-
-template <bool nearest>
-bool find_point(const Built& built, const Thing& thing, RTCIntersectContext* context, RTCRay& ray,
-                RTCHit& hit) {
-  const Part& part = built.parts[thing.part];
-  const PointHits hits = hits_of_point(*part.geometry, thing.primitive, ray);
-  for (int k = 0; k < hits.count; ++k) {
-    const auto& [t, n] = hits.hit[k];
-    RTCHit candidate{n[0], n[1], n[2], 0, 0, thing.primitive, part.id, {context->instID[0]}};
-    if (!keeps<nearest>(built, *part.geometry, context, ray, t, candidate)) continue;
-    hit = candidate;
-    return true;
-  }
-  return false;
-}
-
-void visit(const Built& built, const Thing& thing, RTCIntersectContext* context, RTCRayHit& ray) {
-  const Part& part = built.parts[thing.part];
-  const Geometry& geometry = *part.geometry;
-  if ((geometry.mask & ray.ray.mask) == 0) return;
-  if (thing.instanced != nullptr)
-    return within(built, thing, context, ray.ray,
-                  [&](const Built& inner) { trace_closest(inner, context, ray); });
-  if (!geometry.is_user()) {
-    find_point<true>(built, thing, context, ray.ray, ray.hit);
-    return;
-  }
-  if (geometry.intersect == nullptr) return;
-  int valid = -1;
-  const UserArguments<RTCIntersectFunctionNArguments> arguments{
-      {&valid, geometry.user, thing.primitive, context, reinterpret_cast<RTCRayHitN*>(&ray), 1, part.id},
-      &geometry,
-      built.asks_context};
-  geometry.intersect(&arguments);
-}
-
-bool visit_any(const Built& built, const Thing& thing, RTCIntersectContext* context, RTCRay& ray) {
-  const Part& part = built.parts[thing.part];
-  const Geometry& geometry = *part.geometry;
-  if ((geometry.mask & ray.mask) == 0) return false;
-  bool is_hit = false;
-  if (thing.instanced != nullptr) {
-    within(built, thing, context, ray,
-           [&](const Built& inner) { is_hit = trace_occluded(inner, context, ray); });
-  } else if (!geometry.is_user()) {
-    RTCHit hit;
-    is_hit = find_point<false>(built, thing, context, ray, hit);
-  } else if (geometry.occluded != nullptr) {
-    int valid = -1;
-    const UserArguments<RTCOccludedFunctionNArguments> arguments{
-        {&valid, geometry.user, thing.primitive, context, reinterpret_cast<RTCRayN*>(&ray), 1, part.id},
-        &geometry,
-        built.asks_context};
-    geometry.occluded(&arguments);
-    is_hit = ray.tfar < 0;
-  }
   return is_hit;
-}
-
-[[gnu::noinline]] void visit_things(const Built& built, const raylanes::BoundedTree& tree,
-                                    RTCIntersectContext* context, RTCRayHit& ray) {
-  tree.closest(ray_of(ray.ray, true), [&](const raylanes::LeafVisit& leaf) {
-    for (const std::uint32_t primitive : leaf.primitives) {
-      const float far = ray.ray.tfar;
-      visit(built, built.things[primitive], context, ray);
-      if (ray.ray.tfar < far) leaf.keep(leaf.rays[0], {ray.ray.tfar, 0, 0, primitive});
-    }
-  });
-}
-[[gnu::noinline]] bool visit_any_thing(const Built& built, const raylanes::BoundedTree& tree,
-                                       RTCIntersectContext* context, RTCRay& ray) {
-  return tree.occluded(ray_of(ray, true), [&](const raylanes::LeafVisit& leaf) {
-    for (const std::uint32_t primitive : leaf.primitives)
-      if (leaf.occluded[leaf.rays[0]] == 0 && visit_any(built, built.things[primitive], context, ray))
-        leaf.keep(leaf.rays[0], {0, 0, 0, primitive});
-  });
-}
-
-// Traces what a scene has besides meshes that no callback wants to know of.
-[[gnu::noinline]] void trace_parts(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
-  if (!uses_placed(built, context)) {
-    if (!built.faces.empty()) find_filtered<true>(built, context, ray.ray, ray.hit);
-    if (!built.things.empty()) visit_things(built, built.tree_of_all(), context, ray);
-    return;
-  }
-  const raylanes::Ray whole = ray_of(ray.ray, built.is_robust);
-  if (const raylanes::SceneHit found = built.is_unmasked && ray.ray.mask != 0
-                                           ? built.placed.closest(whole)
-                                           : built.placed.closest(whole, {}, ray.ray.mask)) {
-    ray.ray.tfar = found.t;
-    put_placed(built, found, context->instID[0], ray.hit);
-  }
-  if (built.other_count != 0) visit_things(built, built.others, context, ray);
-}
-[[gnu::noinline]] bool trace_any_part(const Built& built, RTCIntersectContext* context, RTCRay& ray) {
-  if (!uses_placed(built, context)) {
-    RTCHit hit;
-    return (!built.faces.empty() && find_filtered<false>(built, context, ray, hit)) ||
-           (!built.things.empty() && visit_any_thing(built, built.tree_of_all(), context, ray));
-  }
-  const raylanes::Ray whole = ray_of(ray, built.is_robust);
-  return (built.is_unmasked && ray.mask != 0 ? built.placed.occluded(whole)
-                                             : built.placed.occluded(whole, {}, ray.mask)) ||
-         (built.other_count != 0 && visit_any_thing(built, built.others, context, ray));
 }
 
 }  // namespace
 
-void trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
-  if (!is_mesh_alone(built, context)) return trace_parts(built, context, ray);
-  if ((built.mesh_mask & ray.ray.mask) == 0) return;
-  if (const raylanes::Hit found = built.calls->closest(ray_of(ray.ray, built.is_robust))) {
-    ray.ray.tfar = found.t;
-    put_face(built, found.primitive, found.u, found.v, context->instID[0], ray.hit);
-  }
+bool trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray) {
+  if (!is_mesh_alone(built, context)) return trace_parts<true>(built, context, ray);
+  if ((built.mesh_mask & ray.ray.mask) == 0) return false;
+  const raylanes::Hit found = built.calls->closest(ray_of(ray.ray, built.is_robust));
+  if (!found) return false;
+  ray.ray.tfar = found.t;
+  put_face(built, found.primitive, found.u, found.v, context->instID[0], ray.hit);
+  return true;
 }
 bool trace_occluded(const Built& built, RTCIntersectContext* context, RTCRay& ray) {
-  if (!is_mesh_alone(built, context)) return trace_any_part(built, context, ray);
+  if (!is_mesh_alone(built, context)) return trace_parts<false>(built, context, ray);
   return (built.mesh_mask & ray.mask) != 0 && built.calls->occluded(ray_of(ray, built.is_robust));
 }
 

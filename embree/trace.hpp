@@ -9,9 +9,9 @@
 
 namespace embree {
 
-// Sets ray.tfar and the hit if there is one; leaves both otherwise.
-void trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray);
-// Returns whether there is a hit. May leave ray.tfar changed if there is.
+// Both return whether there is a hit. Sets ray.tfar and the hit if there is one; leaves both otherwise.
+bool trace_closest(const Built& built, RTCIntersectContext* context, RTCRayHit& ray);
+// May leave ray.tfar changed if there is a hit.
 bool trace_occluded(const Built& built, RTCIntersectContext* context, RTCRay& ray);
 
 // Embree's rays are open at tnear in fast scenes, and closed in robust ones; ours are closed at tmin. Callers may let

@@ -68,6 +68,23 @@ void visit_occluded(const char* what, const RaySource& rays, std::span<std::uint
   const CheckedCall call(what, rays, occluded, options);
   visit_parts(what, call.rays, SpanSink<std::uint8_t>{occluded}, call.options, trace);
 }
+// The answer of a call with one ray, without the ways of batches where its options ask for none.
+template <class Answer, class Trace, class Visit>
+Answer visit_alone(const Ray& ray, const VisitOptions& options, const Trace& trace, const Visit& visit) {
+  Answer answer{};
+  const bool is_usual = options.threads == 1 && options.counters == nullptr &&
+                        options.skip.first == nullptr && options.skip.count == 0 &&
+                        options.after.first == nullptr && options.after.count == 0;
+  if (!is_usual) {
+    visit(RayView(&ray, 1), &answer);
+    return answer;
+  }
+  const QuietFloats quiet;
+  GeometryBatch batch{&ray, 1, nullptr, nullptr};
+  set_answers(batch, &answer);
+  trace(kernels_of(checked_path(options.path)), batch);
+  return answer;
+}
 // The options of a call with one ray.
 inline VisitOptions for_one_ray(VisitOptions options) {
   options.active = nullptr, options.progress = nullptr;

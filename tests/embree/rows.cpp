@@ -128,6 +128,28 @@ void filters() {
   show("none", s, ray_of(over, down));
 }
 
+// Three geometries behind one another, with masks of their own; then a filter turns down all hits of the first.
+void geometries_apart() {
+  const auto none = [](const RTCFilterFunctionNArguments* a) { std::fill(a->valid, a->valid + a->N, 0); };
+  for (const bool are_spheres : {false, true})
+    for (const bool is_filtered : {false, true}) {
+      RTCGeometry g[3];
+      for (unsigned i = 0; i < 3; ++i) {
+        const float z = -3 * static_cast<float>(i);
+        g[i] = are_spheres ? points_of(RTC_GEOMETRY_TYPE_SPHERE_POINT, {.25f, .25f, z, 1})
+                           : triangles_of({0, 0, z, 1, 0, z, 0, 1, z});
+        rtcSetGeometryMask(g[i], 1u << i);
+      }
+      if (is_filtered) {
+        rtcSetGeometryIntersectFilterFunction(g[0], none);
+        rtcSetGeometryOccludedFilterFunction(g[0], none);
+      }
+      RTCScene s = scene_of({g[0], g[1], g[2]});
+      for (const unsigned mask : {~0u, 1u, 2u, 4u, 6u})
+        show("geometries apart", s, ray_of({.25f, .25f, 5}, down, 0, inf, mask));
+    }
+}
+
 void instances() {
   RTCGeometry masked = triangles_of(unit_triangle), instance;
   rtcSetGeometryMask(masked, 6);
@@ -224,6 +246,7 @@ int main() {
   std::printf("library %s\n", library.dli_fname);
   rays_of_a_triangle();
   filters();
+  geometries_apart();
   instances();
   other_shapes();
   ids_and_errors();

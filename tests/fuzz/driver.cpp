@@ -28,7 +28,8 @@ constexpr struct {
   std::uint64_t floor;  // runs of each seed where the level is quick; twice that by default, 40 times by all
 } targets[] = {{"trace", fuzz_trace, 100},   {"queries", fuzz_queries, 25},  {"arrays", fuzz_arrays, 1000},
                {"roots", fuzz_roots, 1000},  {"readers", fuzz_readers, 250}, {"trees", fuzz_trees, 50},
-               {"scenes", fuzz_scenes, 100}, {"doubles", fuzz_doubles, 10},  {"c_calls", fuzz_c_calls, 250}};
+               {"scenes", fuzz_scenes, 100}, {"doubles", fuzz_doubles, 10},  {"c_calls", fuzz_c_calls, 250},
+               {"embree", fuzz_embree, 50}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 
@@ -130,10 +131,9 @@ int main_of_driver(int count, char** arguments) {
     for (const std::uint64_t seed : seeds) run_seed(target.run, arguments[1], options, seed);
     return 0;
   }
-  std::fprintf(
-      stderr,
-      "usage: fuzz trace|queries|arrays|roots|readers|trees|scenes|doubles|c_calls [--runs N] [--seconds T] "
-      "[--seed S] [--first K] [FILE...]\n");
+  std::fprintf(stderr,
+               "usage: fuzz trace|queries|arrays|roots|readers|trees|scenes|doubles|c_calls|embree "
+               "[--runs N] [--seconds T] [--seed S] [--first K] [FILE...]\n");
   return 2;
 }
 

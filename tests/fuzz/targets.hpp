@@ -19,6 +19,8 @@ int fuzz_arrays(const std::uint8_t* data, std::size_t size);
 int fuzz_roots(const std::uint8_t* data, std::size_t size);
 // The C interface with any arguments.
 int fuzz_c_calls(const std::uint8_t* data, std::size_t size);
+// Embree's interface over raylanes.
+int fuzz_embree(const std::uint8_t* data, std::size_t size);
 // Readers of mesh files on files that were damaged.
 int fuzz_readers(const std::uint8_t* data, std::size_t size);
 // Trees that were saved, damaged and loaded, and trees that were refitted.

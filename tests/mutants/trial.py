@@ -15,6 +15,7 @@ from mutant import UNITS, FOLDERS, folder_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NATIVE = 'python/native/'
+EMBREE = 'embree/libembree3.so.3'  # what is made of embree/
 OF_LIBRARY = ('kernels/exact/predicate.cpp', 'kernels/exact/cross_product.cpp')  # not of a path
 BOUNDARY_LOOP = 'kernels/winding/boundary_loop.cpp'  # of a library of its own
 TIMED_OUT = 'time-out'
@@ -48,6 +49,8 @@ def place_of(mutant, build, path, work):
     if changed.startswith(NATIVE):
         module = next((build / 'python/raylanes').glob('_native*.so'))
         return Place(build, path, str(module.relative_to(build)), changed, work)
+    if changed.startswith('embree/'):
+        return Place(build, path, EMBREE, changed, work)
     for folder, library in ('bench/support/oracles/', 'bench/liboracles.a'), ('bench/support/roots/',
                                                                              'bench/libroot_survey.a'):
         if changed.startswith(folder):
@@ -97,11 +100,12 @@ def link_command(build, program, replacement, output):
 
 
 def link_module(place, replacement, output):
-    """The command that makes the Python module with one object replaced. It comes first: of the inline functions that
-    objects share the linker takes the first."""
-    words = shlex.split(commands(place.build, place.library)[-1])
+    """The command that makes the Python module, or Embree's interface, with one object replaced. It comes first: of the
+    inline functions that objects share the linker takes the first."""
+    words = shlex.split(commands(place.build, place.library)[-1]) + [f'-Wl,-rpath,{place.build}']
     words[words.index('-o') + 1] = str(output)
-    words.remove(next(w for w in words if w.endswith(f'native_{pathlib.Path(place.source).name}.o')))
+    name = pathlib.Path(place.source).name
+    words.remove(next(w for w in words if w.endswith((f'native_{name}.o', f'/{name}.o'))))
     words.insert(next(i for i, w in enumerate(words) if w.endswith('.o')), str(replacement))
     return words
 
@@ -140,10 +144,15 @@ def seconds_unmutated(program, level, path, build, limit):
     return None if failure else time.monotonic() - begin
 
 
+def command_of(program, build):
+    """What runs a test of the build, and its environment."""
+    tests = json.loads((build / 'meson-info/intro-tests.json').read_text())
+    return next((test['cmd'], test['env']) for test in tests if test['name'] == program)
+
+
 def python_run(program, package, build, arguments, limit):
     """A command of the Python that runs a test of the module, with the package of that folder."""
-    tests = json.loads((build / 'meson-info/intro-tests.json').read_text())
-    command, given = next((test['cmd'], test['env']) for test in tests if test['name'] == program)
+    command, given = command_of(program, build)
     environment = {**given, 'PYTHONPATH': str(package), 'LD_LIBRARY_PATH': str(build)}
     return subprocess.run([command[0], *arguments] if arguments else command + ['-x'], cwd=build, capture_output=True,
                           text=True, timeout=limit, env={**os.environ, **environment})
@@ -172,7 +181,7 @@ def python_passes(program, build, limit):
 
 def compile_error(mutant, place, tree, limit):
     """Compiles a mutant to mutant.o in that folder; returns why that fails, or None."""
-    for room in ('include', 'kernels', 'dispatch', 'accel', 'python', 'bench'):
+    for room in ('include', 'kernels', 'dispatch', 'accel', 'embree', 'python', 'bench'):
         shutil.copytree(ROOT / room, tree / room)
     text = (tree / mutant.file).read_text()
     (tree / mutant.file).write_text(mutant.mutated(text))
@@ -211,6 +220,39 @@ def python_verdict_of(mutant, place, limit):
         return ('killed', failure) if failure else ('SURVIVED', ' '.join(mutant.programs))
 
 
+def embree_failure(program, folder, build, limit):
+    """What fails in a test of Embree's interface with the library of that folder; None if nothing does."""
+    command = [str(folder) if word == str(build / 'embree') else word for word in command_of(program, build)[0]]
+    environment = {**os.environ, 'LD_LIBRARY_PATH': str(folder)}
+    try:
+        run = subprocess.run(command, cwd=build, capture_output=True, text=True, timeout=limit, env=environment)
+    except subprocess.TimeoutExpired:
+        return TIMED_OUT
+    return (run.stdout.strip().splitlines() or [f'exit {run.returncode}'])[0] if run.returncode else None
+
+
+def embree_verdict_of(mutant, place, limit):
+    with tempfile.TemporaryDirectory(dir=place.work) as folder:
+        tree = pathlib.Path(folder)
+        error = compile_error(mutant, place, tree, limit)
+        if error:
+            return 'DOES NOT COMPILE', error
+        library = tree / 'mutated/embree'
+        library.mkdir(parents=True)
+        link = subprocess.run(link_module(place, tree / 'mutant.o', library / 'libembree3.so.3'), cwd=place.build,
+                              capture_output=True, text=True)
+        if link.returncode:
+            return 'DOES NOT LOAD', link.stderr.strip()[-200:]
+        for program in mutant.programs:
+            failure = embree_failure(program, place.build / 'embree', place.build, limit)
+            if failure:
+                return 'NOT SHOWN', f'{program} fails without it: {failure}'
+            failure = embree_failure(program, library, place.build, limit)
+            if failure:
+                return 'killed', failure
+        return 'SURVIVED', ' '.join(mutant.programs)
+
+
 def is_of_module(mutant):
     return mutant.file.endswith('.py') or mutant.file.startswith(NATIVE)
 
@@ -235,6 +277,8 @@ def verdict_of(mutant, place, limit, levels):
     """('killed' | 'SURVIVED' | 'DOES NOT COMPILE' | 'DOES NOT LOAD' | 'NOT SHOWN', what said so)."""
     if is_of_module(mutant):
         return python_verdict_of(mutant, place, limit)
+    if place.library == EMBREE:
+        return embree_verdict_of(mutant, place, limit)
     with tempfile.TemporaryDirectory(dir=place.work) as folder:
         tree = pathlib.Path(folder)
         error = compile_error(mutant, place, tree, limit)
