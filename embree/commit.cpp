@@ -56,7 +56,7 @@ raylanes::Transform transform_of(const Matrix& matrix) {
 
 // Whether raylanes::Scene may have an instance: it knows one mask for both, and no callbacks.
 bool is_placeable(const Geometry& instance, const Built& of) {
-  return of.is_plain_mesh && !of.has_others() && (instance.mask == ~0u || of.mesh_mask == ~0u);
+  return of.is_plain_mesh && of.things.empty() && (instance.mask == ~0u || of.mesh_mask == ~0u);
 }
 
 void find_masks(Built& built) {
@@ -70,32 +70,9 @@ void find_masks(Built& built) {
   }
 }
 
-void collect_balls(Built& built, int threads) {
-  std::vector<raylanes::Sphere> spheres;
-  for (Part& part : built.parts) {
-    const Geometry& geometry = *part.geometry;
-    part.is_in_balls = geometry.type == RTC_GEOMETRY_TYPE_SPHERE_POINT && !built.asks_context &&
-                       !geometry.has_filter() && (spheres.empty() || geometry.mask == built.ball_mask);
-    if (!part.is_in_balls) continue;
-    built.ball_mask = geometry.mask;
-    for (std::uint32_t i = 0; i < geometry.primitive_count(); ++i) {
-      const raylanes::Box box = box_of_point(geometry, i);
-      if (is_empty(box)) continue;
-      const auto* at = geometry.find(RTC_BUFFER_TYPE_VERTEX)->at<float>(i);
-      spheres.push_back({{at[0], at[1], at[2]}, at[3]});
-      built.ball.push_back({spheres.back(), part.id, i});
-      include(built.bounds, box);
-    }
-  }
-  raylanes::BoundedBuildOptions options;
-  options.threads = threads;
-  built.balls = raylanes::SphereTree(spheres, options);
-}
-
 void collect_things(Built& built, bool placed) {
   for (std::uint32_t part = 0; part < built.parts.size(); ++part) {
     const Geometry& geometry = *built.parts[part].geometry;
-    if (built.parts[part].is_in_balls) continue;
     const Built* of = nullptr;
     if (geometry.is_instance()) {
       if (geometry.instanced.get() == nullptr) continue;
@@ -192,24 +169,22 @@ void Scene::commit() {
   fresh->faces = std::move(meshes.faces);
   fresh->calls = std::as_const(*fresh->mesh).calls();
 
-  fresh->bounds = fresh->mesh->bounds();
-  collect_balls(*fresh, device->threads);
   collect_things(*fresh, false);
   fresh->other_count = fresh->things.size();
   collect_things(*fresh, true);
-  fresh->has_mesh_alone = fresh->is_plain_mesh && !fresh->has_others();
+  fresh->has_mesh_alone = fresh->is_plain_mesh && fresh->things.empty();
   if (fresh->is_plain_mesh) place_all(*fresh, device->threads);
   raylanes::BoundedBuildOptions options;
   options.threads = device->threads;
   fresh->others = raylanes::BoundedTree(std::span(fresh->boxes).first(fresh->other_count), options);
   if (fresh->has_placed_instances) fresh->others_and_placed = raylanes::BoundedTree(fresh->boxes, options);
 
+  fresh->bounds = fresh->mesh->bounds();
   for (const raylanes::Box& box : fresh->boxes)
     if (!is_empty(box)) include(fresh->bounds, box);
   const auto bytes =
       static_cast<std::ptrdiff_t>(fresh->mesh->bytes() + fresh->placed.bytes() + fresh->others.bytes() +
-                                  fresh->others_and_placed.bytes() + fresh->balls.bytes() +
-                                  fresh->faces.size() * sizeof(Face) + fresh->ball.size() * sizeof(Ball));
+                                  fresh->others_and_placed.bytes() + fresh->faces.size() * sizeof(Face));
   device->memory(bytes, true);
   fresh->device = device, fresh->bytes = bytes;
   if (monitor) monitor(1);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 #include "scene.hpp"
@@ -73,33 +72,40 @@ class Search {
   }
 
  private:
-  // A distance to a box is one to the box around it in the scene if the space is no similarity.
-  bool is_near(const Space& space, const Float3& lo, const Float3& hi, double* distance = nullptr) const {
-    double sum = 0;
-    const auto add = [&](double low, double high, double at) {
-      const double way = std::max({low - at, at - high, 0.0});
-      sum += way * way;
+  static constexpr std::size_t width = raylanes::tree_width;
+  using Bounds = float[3][width];
+
+  // Squared distances to eight boxes. In a space that is no similarity, to the boxes around them in the scene.
+  void find_distances(const Space& space, const Bounds& lo, const Bounds& hi, double (&sum)[width]) const {
+    std::fill(sum, sum + width, 0.0);
+    const auto add = [](double& all, double low, double high, double at) {
+      const double below = low - at, above = at - high, way = below > above ? below : above;
+      all += way > 0 ? way * way : 0;
     };
-    if (space.scale != 0) {
-      for (std::size_t k = 0; k < 3; ++k)
-        add(static_cast<double>(lo[k]), static_cast<double>(hi[k]), space.point[k]);
-      sum /= static_cast<double>(space.scale) * static_cast<double>(space.scale);
-    } else {
-      const double at[3] = {query_.x, query_.y, query_.z};
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double(&row)[4] = space.to_scene.row[i];
+    const double at[3] = {query_.x, query_.y, query_.z}, scale = static_cast<double>(space.scale);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (scale != 0) {
+        for (std::size_t k = 0; k < width; ++k)
+          add(sum[k], static_cast<double>(lo[i][k]), static_cast<double>(hi[i][k]), space.point[i]);
+        continue;
+      }
+      const double(&row)[4] = space.to_scene.row[i];
+      for (std::size_t k = 0; k < width; ++k) {
         double low = row[3], high = row[3];
         for (std::size_t j = 0; j < 3; ++j) {
-          const double a = row[j] * static_cast<double>(lo[j]), b = row[j] * static_cast<double>(hi[j]);
+          const double a = row[j] * static_cast<double>(lo[j][k]), b = row[j] * static_cast<double>(hi[j][k]);
           low += std::min(a, b), high += std::max(a, b);
         }
-        add(low, high, at[i]);
+        add(sum[k], low, high, at[i]);
       }
     }
-    if (distance != nullptr) *distance = sum;
-    // For the roundings of boxes, points and radii. A primitive too many does no harm.
+    if (scale != 0)
+      for (double& all : sum) all /= scale * scale;
+  }
+  // For the roundings of boxes, points and radii. A primitive too many does no harm.
+  bool is_near(double squared_distance) const {
     const double radius = static_cast<double>(query_.radius);
-    return radius >= 0 && sum <= radius * radius * (1 + 1e-6);
+    return radius >= 0 && squared_distance <= radius * radius * (1 + 1e-6);
   }
 
   void ask(const Part& part, std::uint32_t primitive, float scale) {
@@ -118,40 +124,39 @@ class Search {
       raylanes::TreeReference reference;
     };
     std::vector<Child> stack;
+    stack.reserve(64);
     if (tree.root != raylanes::empty_reference) stack.push_back({0, tree.root});
+    double distance[width];
     while (!stack.empty()) {
       const Child child = stack.back();
       stack.pop_back();
-      if (!(child.distance <=
-            static_cast<double>(query_.radius) * static_cast<double>(query_.radius) * (1 + 1e-6)))
-        continue;
+      if (!is_near(child.distance)) continue;
       if (raylanes::refers_to_leaf(child.reference)) {
         visit_leaf(space, tree.leaves[raylanes::leaf_of(child.reference).block], visit);
         continue;
       }
       const raylanes::WideNode& node = tree.nodes[child.reference];
+      find_distances(space, node.lo, node.hi, distance);
       const auto begin = static_cast<std::ptrdiff_t>(stack.size());
-      for (std::size_t k = 0; k < raylanes::tree_width; ++k) {
-        double distance;
-        if ((node.occupied >> k & 1) != 0 &&
-            is_near(space, {node.lo[0][k], node.lo[1][k], node.lo[2][k]},
-                    {node.hi[0][k], node.hi[1][k], node.hi[2][k]}, &distance))
-          stack.push_back({distance, node.child[k]});
-      }
+      for (std::size_t k = 0; k < width; ++k)
+        if ((node.occupied >> k & 1) != 0 && is_near(distance[k]))
+          stack.push_back({distance[k], node.child[k]});
       std::sort(stack.begin() + begin, stack.end(),
                 [](const Child& a, const Child& b) { return a.distance > b.distance; });
     }
   }
   template <class Visit>
   void visit_leaf(const Space& space, const raylanes::LeafBlock<9>& leaf, Visit&& visit) {
-    for (std::size_t k = 0; k < raylanes::tree_width; ++k) {
-      if (leaf.primitive[k] == raylanes::no_primitive) continue;
-      Float3 lo, hi;
-      for (std::size_t a = 0; a < 3; ++a)
-        std::tie(lo[a], hi[a]) =
-            std::minmax({leaf.number[a][k], leaf.number[3 + a][k], leaf.number[6 + a][k]});
-      if (is_near(space, lo, hi)) visit(leaf.primitive[k]);
-    }
+    Bounds lo, hi;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < width; ++k) {
+        const float a = leaf.number[i][k], b = leaf.number[3 + i][k], c = leaf.number[6 + i][k];
+        lo[i][k] = std::min(std::min(a, b), c), hi[i][k] = std::max(std::max(a, b), c);
+      }
+    double distance[width];
+    find_distances(space, lo, hi, distance);
+    for (std::size_t k = 0; k < width; ++k)
+      if (leaf.primitive[k] != raylanes::no_primitive && is_near(distance[k])) visit(leaf.primitive[k]);
   }
 
   void visit_triangles(const Built& built, const Space& space) {

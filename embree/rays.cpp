@@ -121,7 +121,7 @@ void trace_single(const Built& built, RTCIntersectContext* context, const Rays<L
 template <class Locate>
 void trace(const Built& built, RTCIntersectContext* context, const Rays<Locate>& rays) {
   const std::size_t fewest = is_coherent(context) ? fewest_coherent : fewest_in_batch;
-  if (rays.size() >= fewest && uses_placed(built, context) && built.other_count == 0 && built.ball.empty()) {
+  if (rays.size() >= fewest && uses_placed(built, context) && built.other_count == 0) {
     const unsigned mask = rays.mask(0);
     bool is_same = true;
     for (std::size_t i = 1; i < rays.size() && is_same; ++i) is_same = rays.mask(i) == mask;

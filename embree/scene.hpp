@@ -18,7 +18,6 @@ namespace embree {
 struct Part {
   Ref<Geometry> geometry;
   unsigned id;
-  bool is_in_balls = false;
 };
 
 // A triangle of a mesh, by its index in the tree: what a hit needs besides t, u and v. Half a cache line.
@@ -46,14 +45,7 @@ struct Placement {
   unsigned id;
 };
 
-// A sphere of `balls`.
-struct Ball {
-  raylanes::Sphere sphere;
-  unsigned geometry, primitive;
-};
-
-// One tree of all triangles, one of spheres of one mask that no filter asks about, and one of the boxes of all other
-// things. Instances of scenes that have meshes alone are in
+// One tree of all triangles, and one of the boxes of all things. Instances of scenes that have meshes alone are in
 // a raylanes::Scene besides, where rays walk through them without callbacks.
 struct Built {
   Ref<Device> device;
@@ -70,10 +62,6 @@ struct Built {
   std::vector<Placement> placements;  // by instance of `placed`
   bool has_placed_instances = false;
   bool is_unmasked = true;  // whether all masks in `placed` have all bits
-
-  raylanes::SphereTree balls;
-  std::vector<Ball> ball;  // of `balls`
-  unsigned ball_mask = ~0u;
 
   std::vector<Thing> things;         // placed instances come last
   std::vector<raylanes::Box> boxes;  // of `things`
@@ -95,7 +83,6 @@ struct Built {
   Built(const Built&) = delete;
   Built& operator=(const Built&) = delete;
 
-  bool has_others() const { return !things.empty() || !ball.empty(); }
   const raylanes::BoundedTree& tree_of_all() const {
     return has_placed_instances ? others_and_placed : others;
   }

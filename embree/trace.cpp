@@ -144,26 +144,6 @@ bool find_placed(const Built& built, RTCIntersectContext* context, Traced<neares
   }
 }
 
-template <bool nearest>
-bool find_ball(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
-  RTCRay& ray = ray_in(both);
-  if (built.ball.empty() || (built.ball_mask & ray.mask) == 0) return false;
-  const raylanes::Ray whole = ray_of(ray, true);
-  if constexpr (nearest) {
-    const raylanes::Hit found = built.balls.closest(whole);
-    if (!found) return false;
-    const Ball& ball = built.ball[found.primitive];
-    float normal[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      normal[k] = whole.origin[k] - ball.sphere.centre[k] + found.t * whole.direction[k];
-    ray.tfar = found.t;
-    both.hit = {normal[0], normal[1], normal[2], 0, 0, ball.primitive, ball.geometry, {context->instID[0]}};
-    return true;
-  } else {
-    return built.balls.occluded(whole);
-  }
-}
-
 // Traces what a scene has besides meshes that no callback wants to know of.
 template <bool nearest>
 [[gnu::noinline]] bool trace_parts(const Built& built, RTCIntersectContext* context, Traced<nearest>& both) {
@@ -174,8 +154,6 @@ template <bool nearest>
     is_hit = find_placed<nearest>(built, context, both);
   else if (!built.faces.empty())
     is_hit = find_filtered<nearest>(built, context, both);
-  if (is_hit && !nearest) return true;
-  is_hit = find_ball<nearest>(built, context, both) || is_hit;
   if (is_hit && !nearest) return true;
   return (rest.size() != 0 && visit_things<nearest>(built, rest, context, both)) || is_hit;
 }
