@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "../report/exits.hpp"
+#include "../rows/point_rows.hpp"
 #include "../support/pictures/image.hpp"
 #include "../support/readers/printable.hpp"
 #include "../support/scenes/subdivision.hpp"

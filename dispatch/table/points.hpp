@@ -1,5 +1,5 @@
 // Kernels for the closest points of triangles. Contracts: <raylanes/points.hpp>; of trees, whose blocks have corners,
-// Bvh in <raylanes/bvh.hpp>.
+// TriangleTree::closest_points().
 #pragma once
 
 #include <cstddef>

@@ -98,7 +98,7 @@ inline constexpr std::size_t rays_of_an_origin = 16384;
 
 // Null where a mode does not offer a test. Single rays offer all, and ask for no scratch: scratch_bytes(n) is what a
 // call with n rays needs. The tree has no node below max_tree_depth others, or max_kd_depth of a k-d tree, and blocks
-// with the numbers of the test. For the contract see Bvh in <raylanes/bvh.hpp>.
+// with the numbers of the test. Contract: TriangleTree::closest().
 struct TraversalRow {
   void (*closest)(const TreeView& tree, const TraceBatch& batch);
   void (*any)(const TreeView& tree, const TraceBatch& batch);

@@ -35,7 +35,7 @@ TEST(TriangleSymmetries, the_order_of_corners_changes_nothing_beyond_rounding) {
         for (const Triangle& order : orders)
           for (const Ray& ray : scene.rays) judgements.push_back(judge(test, ray, order));
         for (const TriangleVariant& variant : all_variants<TriangleTest>()) {
-          // The same bits as moller_trumbore, see decisions.cpp.
+          // The same bits as moller_trumbore, see triangle_decisions.cpp.
           if (variant.test != test) continue;
           const Results results = answers(variant, scene.rays, orders);
           for (std::size_t i = 0; i < results.size(); ++i) {

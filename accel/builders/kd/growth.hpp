@@ -1,4 +1,4 @@
-// How k-d trees grow from their root, in the order of ../build/level_order.hpp and without recursion. Who splits is a
+// How k-d trees grow from their root, in the order of builders/level_order.hpp and without recursion. Who splits is a
 // type.
 #pragma once
 

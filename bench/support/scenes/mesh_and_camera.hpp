@@ -29,7 +29,7 @@ struct Scene {
 Box bounds_of(const Mesh& mesh);
 double diagonal_of(const Mesh& mesh);
 
-// The built-in scene of that name (see procedural_scenes.hpp), or else the mesh file at that path (see
+// The built-in scene of that name (see procedural.hpp), or else the mesh file at that path (see
 // mesh_reader.hpp). The camera of a file comes from `scenes.tsv` in the same folder if that lists the file
 // (tab-separated: name, file, triangles, eye, look_at, up, fov_deg, kind; lines that start with # are
 // skipped), else it is automatic_camera. The name is that of the list, else the file name without its

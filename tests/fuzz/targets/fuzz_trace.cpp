@@ -58,7 +58,7 @@ bool is_in_own_box(const Ray& ray, float t, const Triangle& triangle, float reac
 // The brute-force hit of the ray for the watertight test; `comparable`: whether the traversal must say the same.
 // Left out are
 //   numbers other than 0 and 2^-40 … 2^40 in size: reciprocals and differences of bounds may overflow or
-//   underflow, and table.hpp promises independence of the tree for none such;
+//   underflow, and TriangleTree::closest() promises independence of the tree for none such;
 //   rays for which the canonical test reports a triangle at a point outside that triangle's own box: rays
 //   nearly in its plane, whose t is rounding error. In trees with parts of triangles all rays are left out, because
 //   such a point may be in the triangle's box and in that of no part.
