@@ -78,20 +78,12 @@ struct Estimates {
   static V reciprocal_root(const V& a) {
     return rsqrt_estimate(a);
   }
-  template <class V>
-  static V reciprocal(const V& a) {
-    return reciprocal_estimate(a);
-  }
 };
 struct EstimatesOrOne {
   static constexpr bool serve_zeros = true;
   template <class V>
   static V reciprocal_root(const V& a) {
     return or_one(a, rsqrt_estimate(a));
-  }
-  template <class V>
-  static V reciprocal(const V& a) {
-    return or_one(a, reciprocal_estimate(a));
   }
   template <class T, int N>
   static Lanes<T, N> or_one(const Lanes<T, N>& a, const Lanes<T, N>& y) {
