@@ -3,19 +3,28 @@
 namespace raylanes::bench {
 namespace {
 
+// The lanes of a mode's packets.
+std::size_t lanes_of(EmbreeMode mode) {
+  constexpr std::size_t lanes[] = {1, 4, 8, 16, 1};
+  return lanes[static_cast<std::size_t>(mode)];
+}
+
 Contender packed_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode, bool coherent) {
   const auto timed = [&embree, mode, coherent](const RaySet& set, Answers& answers) {
     return embree.trace_packed(mode, coherent, set, answers);
   };
-  return {std::move(name), timed, timed};
+  return {std::move(name), timed, timed, lanes_of(mode)};
 }
 
-// With the conversion of rays and hits.
+// With the conversion of rays and hits. `batch`: rays of a call.
 Contender converting_contender(std::string name, const EmbreeContender& embree, EmbreeMode mode,
-                               bool coherent) {
-  return {std::move(name), [&embree, mode, coherent](const RaySet& set, Answers& answers) {
-            embree.trace(mode, coherent, set, answers);
-          }};
+                               bool coherent, std::size_t batch) {
+  return {std::move(name),
+          [&embree, mode, coherent, batch](const RaySet& set, Answers& answers) {
+            embree.trace(mode, coherent, set, answers, batch);
+          },
+          {},
+          batch};
 }
 
 }  // namespace
@@ -89,19 +98,24 @@ Contender our_caller(const TriangleTree& tree, const TraceOptions& options, bool
 }
 
 std::vector<Contender> embree_callers(const EmbreeContender& embree) {
-  return {converting_contender("call", embree, EmbreeMode::single, false),
+  return {converting_contender("call", embree, EmbreeMode::single, false, 1),
           packed_contender("call_packed", embree, EmbreeMode::single, false)};
 }
 
-std::vector<Contender> embree_contenders(const EmbreeContender& embree) {
-  std::vector<Contender> contenders{converting_contender("single", embree, EmbreeMode::single, false)};
+std::vector<Contender> embree_contenders(const EmbreeContender& embree,
+                                         std::span<const std::size_t> streams) {
+  std::vector<Contender> contenders{converting_contender("single", embree, EmbreeMode::single, false, 1)};
+  const auto add_both = [&](const std::string& name, EmbreeMode mode, std::size_t batch) {
+    contenders.push_back(converting_contender(name, embree, mode, false, batch));
+    contenders.push_back(converting_contender(name + "_coherent", embree, mode, true, batch));
+  };
   const std::pair<const char*, EmbreeMode> packets[] = {
       {"packet4", EmbreeMode::packet4}, {"packet8", EmbreeMode::packet8}, {"packet16", EmbreeMode::packet16}};
-  for (const auto& [name, mode] : packets) {
-    if (!embree.native(mode)) continue;
-    contenders.push_back(converting_contender(name, embree, mode, false));
-    contenders.push_back(converting_contender(std::string(name) + "_coherent", embree, mode, true));
-  }
+  for (const auto& [name, mode] : packets)
+    if (embree.native(mode)) add_both(name, mode, lanes_of(mode));
+  for (const std::size_t batch : streams)
+    if (batch > 0 && batch <= max_embree_stream && embree.native(EmbreeMode::stream))
+      add_both("stream", EmbreeMode::stream, batch);
   for (const auto& [name, mode] : {packets[2], packets[1], packets[0]}) {
     if (!embree.native(mode)) continue;
     contenders.push_back(packed_contender(std::string(name) + "_packed", embree, mode, false));

@@ -31,6 +31,7 @@ struct Contender {
   // For a packed contender: traces and returns the seconds that count, without the layout of rays and results. Empty if
   // all that `trace` does counts.
   std::function<double(const RaySet&, Answers&)> timed = {};
+  std::size_t batch = 1;  // rays of each of Embree's calls
 
   bool is_packed() const { return static_cast<bool>(timed); }
 };
@@ -50,7 +51,8 @@ std::vector<Contender> embree_callers(const EmbreeContender& embree);
 
 // All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
 // hint that they are coherent; the widest of its packets again from rays that lie in its layout before the clock
-// starts, NAME_packed. The Embree scene must outlive them.
-std::vector<Contender> embree_contenders(const EmbreeContender& embree);
+// starts, NAME_packed; and streams of so many rays a call, 0: none. The Embree scene must outlive them.
+std::vector<Contender> embree_contenders(const EmbreeContender& embree,
+                                         std::span<const std::size_t> streams = {});
 
 }  // namespace raylanes::bench

@@ -117,6 +117,7 @@ void add(RowTable& table, const SceneTraceOptions& options, const TraceRow& row)
            row.batch == 0 ? "" : std::to_string(row.batch))
       .add("Mrays/s", "mrays_per_second", row.mrays_per_second)
       .add_median("× Embree", "ratio", row.ratio)
+      .add_median("× calls", "ratio_to_calls", row.ratio_to_calls)
       .add("build", "build", row.build)
       .add_spread(row.spread)
       .add_ratio("× its tree", "ratio_to_tree", row.ratio_to_tree)
@@ -355,8 +356,10 @@ void add_trace_command(CLI::App& tool) {
              "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre");
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "order of pixels; secondary rays follow them");
-  add_numbers(*command, "--batch", trace.batches, {0, max_batch},
-              "rays in each call of ours, such as 65536,4096,256; 0: all at once");
+  add_numbers(
+      *command, "--batch", trace.batches, {0, max_batch},
+      "rays in each call, such as 65536,4096,256, with --against embree also of its streams; 0: all at "
+      "once");
   command->add_flag("--skip", trace.skips,
                     "leave out the triangle that a secondary ray begins on, as renderers do");
   command->add_flag("--warm", trace.warm,

@@ -86,11 +86,18 @@ struct Any {
   using Packet = AnyPacket<W>;
 };
 
+template <typename Trace>
+auto by_query(const RaySet& set, Answers& answers, const Trace& trace) {
+  return set.query == Query::closest ? trace(Closest{}, std::span(answers.hits))
+                                     : trace(Any{}, std::span(answers.occluded));
+}
+
 // Calls with the packet of the mode and its lanes: `with.template operator()<Packet, lanes>()`.
 template <typename Query, typename With>
 void with_packet(EmbreeMode mode, const With& with) {
   switch (mode) {
     case EmbreeMode::single:
+    case EmbreeMode::stream:  // of single rays
       return with.template operator()<typename Query::Single, 1>();
     case EmbreeMode::packet4:
       return with.template operator()<typename Query::template Packet<Width4>, 4>();
@@ -129,6 +136,23 @@ void trace(RTCScene scene, const Numbering& numbering, EmbreeMode mode, bool coh
       numbering.renumber(packet, std::span(out, lanes));
     });
   });
+}
+
+template <typename Query>
+void trace_stream(RTCScene scene, const Numbering& numbering, bool coherent, std::size_t size,
+                  std::span<const Ray> rays, std::span<typename Query::Result> results) {
+  using Single = typename Query::Single;
+  RTCIntersectContext context = make_context(coherent);
+  std::vector<Single> stream(std::min({size, rays.size(), max_embree_stream}));
+  for (std::size_t begin = 0, count; begin < rays.size(); begin += count) {
+    count = std::min(stream.size(), rays.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) stream[i].lay_out(&rays[begin + i]);
+    Single::stream(scene, &context, &stream[0].query, static_cast<unsigned>(count), sizeof(Single));
+    for (std::size_t i = 0; i < count; ++i) {
+      stream[i].write(&results[begin + i]);
+      numbering.renumber(stream[i], results.subspan(begin + i, 1));
+    }
+  }
 }
 
 template <typename Query>
@@ -288,30 +312,33 @@ double EmbreeContender::move(std::span<const Float3> vertices) {
 }
 
 bool EmbreeContender::native(EmbreeMode mode) const {
-  constexpr RTCDeviceProperty of_packets[] = {RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED,
-                                              RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
-                                              RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED};
+  constexpr RTCDeviceProperty of_modes[] = {
+      RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
+      RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED, RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED};
   return mode == EmbreeMode::single ||
-         rtcGetDeviceProperty(scene_->device, of_packets[static_cast<std::size_t>(mode) - 1]) != 0;
+         rtcGetDeviceProperty(scene_->device, of_modes[static_cast<std::size_t>(mode) - 1]) != 0;
 }
 
-void EmbreeContender::trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const {
+void EmbreeContender::trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers,
+                            std::size_t batch) const {
   const SubnormalsAreZero subnormals;
-  if (set.query == Query::closest)
-    bench::trace<Closest>(scene_->scene, scene_->numbering, mode, coherent, set.rays, answers.hits);
-  else
-    bench::trace<Any>(scene_->scene, scene_->numbering, mode, coherent, set.rays, answers.occluded);
+  by_query(set, answers, [&]<typename Query>(Query, std::span<typename Query::Result> results) {
+    if (mode == EmbreeMode::stream)
+      trace_stream<Query>(scene_->scene, scene_->numbering, coherent, batch, set.rays, results);
+    else
+      bench::trace<Query>(scene_->scene, scene_->numbering, mode, coherent, set.rays, results);
+  });
   scene_->check();
 }
 
 double EmbreeContender::trace_packed(EmbreeMode mode, bool coherent, const RaySet& set,
                                      Answers& answers) const {
   const SubnormalsAreZero subnormals;
-  const double seconds = set.query == Query::closest
-                             ? bench::trace_packed<Closest>(scene_->scene, scene_->numbering, mode, coherent,
-                                                            set.rays, answers.hits)
-                             : bench::trace_packed<Any>(scene_->scene, scene_->numbering, mode, coherent,
-                                                        set.rays, answers.occluded);
+  const double seconds =
+      by_query(set, answers, [&]<typename Query>(Query, std::span<typename Query::Result> results) {
+        return bench::trace_packed<Query>(scene_->scene, scene_->numbering, mode, coherent, set.rays,
+                                          results);
+      });
   scene_->check();
   return seconds;
 }

@@ -13,9 +13,10 @@ namespace raylanes::bench {
 struct RaySet;
 struct Answers;
 
-// How many rays one call of Embree takes. A width that the instruction set does not have natively still
-// works: Embree then splits the packet itself.
-enum class EmbreeMode { single, packet4, packet8, packet16 };
+// How many rays one call of Embree takes: one, a packet, or any number. A width that the instruction set does not have
+// natively still works: Embree then splits the packet itself.
+enum class EmbreeMode { single, packet4, packet8, packet16, stream };
+inline constexpr std::size_t max_embree_stream = 1024;  // rays: longer streams are several calls
 
 // Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without
 // the shortcuts that lose accuracy; and of low quality, by Morton codes. One more is not traced, for meshes in motion:
@@ -59,9 +60,11 @@ class EmbreeContender {
   // Whether the chosen instruction set traces packets of this mode without splitting them.
   bool native(EmbreeMode mode) const;
 
-  // Traces a ray set into answers of its size. `coherent` passes Embree's hint that neighbouring rays are similar.
-  // Throws std::invalid_argument if a ray is refused; answers may then be written in part. Allocates nothing.
-  void trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers) const;
+  // Traces a ray set into answers of its size, streams in calls of `batch` rays, at most max_embree_stream. `coherent`
+  // passes Embree's hint that neighbouring rays are similar.
+  // Throws std::invalid_argument if a ray is refused; answers may then be written in part. Only streams allocate.
+  void trace(EmbreeMode mode, bool coherent, const RaySet& set, Answers& answers,
+             std::size_t batch = 0) const;
 
   // Traces as trace() does. Returns the seconds of Embree's own calls: rays are in its layout before the clock starts,
   // and results are converted after it has stopped. Allocates that layout.

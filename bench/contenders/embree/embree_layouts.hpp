@@ -212,6 +212,7 @@ inline RTCRay single_ray(const Ray& ray) {
 
 // A ray in Embree's layout; where Embree must not see it, one that hits nothing.
 struct ClosestRay {
+  static constexpr auto stream = rtcIntersect1M;
   RTCRayHit query;
 
   void lay_out(const Ray* ray) {
@@ -231,6 +232,7 @@ struct ClosestRay {
 };
 
 struct AnyRay {
+  static constexpr auto stream = rtcOccluded1M;
   RTCRay query;
 
   void lay_out(const Ray* ray) { query = single_ray(traceable(*ray) ? *ray : nothing); }

@@ -34,7 +34,7 @@ double EmbreeContender::move(std::span<const Float3>) {
 bool EmbreeContender::native(EmbreeMode) const {
   refuse();
 }
-void EmbreeContender::trace(EmbreeMode, bool, const RaySet&, Answers&) const {
+void EmbreeContender::trace(EmbreeMode, bool, const RaySet&, Answers&, std::size_t) const {
   refuse();
 }
 double EmbreeContender::trace_packed(EmbreeMode, bool, const RaySet&, Answers&) const {

@@ -106,37 +106,42 @@ const Entry* candidate_of(const std::vector<Entry>& entries, const Counts& count
 }  // namespace
 
 void rate(std::vector<Entry>& entries) {
-  const auto best_of = [&](bool calls, bool packed, const auto& counts) {
-    return candidate_of(entries, [&](const Entry& e) {
-      return e.row.contender == "embree" && e.is_call() == calls && e.contender.is_packed() == packed &&
-             counts(e);
-    });
-  };
   const auto is_fast = [](const Entry& e) { return !e.is_robust(); };
   const auto is_single = [&](const Entry& e) {
     return is_fast(e) && (e.is_call() || e.row.mode == "single");
   };
   const auto is_robust = [](const Entry& e) { return e.is_robust(); };
   for (Entry& entry : entries) {
-    const bool calls = entry.is_call();
-    const Entry* const tree = candidate_of(entries, [&](const Entry& e) {
-      return e.is_ours() && e.row.path == entry.row.path && e.row.mode == entry.row.mode &&
-             e.row.batch == entry.row.batch;
-    });
+    TraceRow& row = entry.row;
+    const auto ours_of = [&](const auto& counts) {
+      return candidate_of(entries,
+                          [&](const Entry& e) { return e.is_ours() && e.row.path == row.path && counts(e); });
+    };
+    // Calls beside calls, and batches beside what takes no more rays a call.
+    const auto rival_of = [&](const char* name, bool packed, const auto& counts) {
+      return candidate_of(entries, [&](const Entry& e) {
+        return e.row.contender == name && e.is_call() == entry.is_call() &&
+               e.contender.is_packed() == packed &&
+               e.row.batch <= (row.batch == 0 ? row.ray_count : row.batch) && counts(e);
+      });
+    };
+    const Entry* const tree =
+        ours_of([&](const Entry& e) { return e.row.mode == row.mode && e.row.batch == row.batch; });
     if (!entry.is_ours() && !entry.is_embree() && tree != nullptr)
-      entry.row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
-    const char* const rival = entry.row.contender == "scene_moving" ? "embree_instances" : "embree";
-    const Entry* const best = candidate_of(entries, [&](const Entry& e) {
-      return e.row.contender == rival && e.is_call() == calls && !e.contender.is_packed() && is_fast(e);
-    });
+      row.ratio_to_tree = speed_ratio(entry.timing, tree->timing);
+    const Entry* const loop = ours_of([&](const Entry& e) { return e.is_call() && e.row.test == row.test; });
+    if (entry.is_ours() && !entry.is_call() && loop != nullptr)
+      row.ratio_to_calls = speed_ratio(entry.timing, loop->timing);
+    const Entry* const best =
+        rival_of(row.contender == "scene_moving" ? "embree_instances" : "embree", false, is_fast);
     if (!(entry.is_ours() || entry.is_scene()) || best == nullptr) continue;
-    entry.row.ratio = speed_ratio(entry.timing, best->timing);
-    entry.row.ratio_to = best->row.build + " " + best->row.mode;
+    row.ratio = speed_ratio(entry.timing, best->timing);
+    row.ratio_to = best->row.build + " " + best->row.mode;
     if (!entry.is_ours()) continue;
-    entry.row.ratio_to_single = speed_ratio(entry.timing, best_of(calls, false, is_single)->timing);
-    entry.row.ratio_to_robust = speed_ratio(entry.timing, best_of(calls, false, is_robust)->timing);
-    if (const Entry* const packed = best_of(calls, true, is_fast))
-      entry.row.ratio_to_packed = speed_ratio(entry.timing, packed->timing);
+    row.ratio_to_single = speed_ratio(entry.timing, rival_of("embree", false, is_single)->timing);
+    row.ratio_to_robust = speed_ratio(entry.timing, rival_of("embree", false, is_robust)->timing);
+    if (const Entry* const packed = rival_of("embree", true, is_fast))
+      row.ratio_to_packed = speed_ratio(entry.timing, packed->timing);
   }
 }
 

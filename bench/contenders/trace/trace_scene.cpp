@@ -245,7 +245,10 @@ class Tracer {
     const auto& [name, build, embree] = named;
     const bool is_robust = build == EmbreeBuild::robust;
     std::vector<Contender> contenders;
-    if (!options_.modes.empty()) contenders = embree_contenders(*embree);
+    const std::vector<std::size_t> all_at_once{0};
+    const bool are_sized = options_.batches != all_at_once;
+    if (!options_.modes.empty())
+      contenders = embree_contenders(*embree, is_robust ? all_at_once : options_.batches);
     if (options_.calls)
       for (Contender& caller : embree_callers(*embree)) contenders.push_back(std::move(caller));
     // Debian's Embree 3.13 does not return from packets of any-hit rays through instances with AVX-512.
@@ -253,7 +256,7 @@ class Tracer {
       std::erase_if(contenders, [](const Contender& c) { return c.mode.starts_with("packet"); });
     for (Contender& contender : contenders) {
       TraceRow row = new_row(question, contender);
-      row.batch = contender.mode.starts_with("call") ? 1 : 0;
+      row.batch = are_sized || contender.mode.starts_with("call") ? contender.batch : 0;
       row.contender = name, row.path = "embree-" + isa, row.isa = isa;
       row.build = embree_build_names[static_cast<std::size_t>(build)],
       row.build_seconds = embree->build_seconds();

@@ -50,7 +50,7 @@ struct TraceRow {
   std::string isa;
   std::string contender;  // raylanes, embree, embree_instances, or one of scene_contenders.hpp
   std::string mode;
-  std::size_t batch = 0;             // rays of a call; 0: all at once
+  std::size_t batch = 0;             // rays of a call, for Embree only if `batches` has sizes; 0: all at once
   std::optional<TriangleTest> test;  // of ours
   std::string build;
   double mrays_per_second = 0.0;
@@ -58,10 +58,11 @@ struct TraceRow {
   std::vector<double> rounds_mrays_per_second;
   // Our speed by Embree's on the same instruction set, by rounds: by its best mode over trees of either quality, by its
   // best single rays over these, by its best mode over its robust tree; and by its best mode from rays in its own
-  // layout. Calls with a ray are compared with its calls with a ray. Scenes have the first one only: those whose parts
-  // will move by Embree's instances.
+  // layout. Calls with a ray are compared with its calls with a ray, batches with modes that take no more rays a call.
+  // Scenes have the first one only: those whose parts will move by Embree's instances.
   std::optional<Quartiles> ratio, ratio_to_single, ratio_to_robust, ratio_to_packed;
-  std::string ratio_to;  // which its best mode is
+  std::string ratio_to;                     // which its best mode is
+  std::optional<Quartiles> ratio_to_calls;  // of our batches: to our own loop of calls
   std::optional<Quartiles>
       ratio_to_tree;  // of scenes and user's tests: to the tree's own mode of the same name
   std::size_t hits = 0;

@@ -1,6 +1,6 @@
 """The charts of README.md and docs/, made from the measured files of bench/results. Needs matplotlib."""
 import plot_style
-from results import KINDS
+from results import KINDS, TWO_PATHS, speeds_by_batch
 from roots import (ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, SHORT_LENGTHS, SHORT_WAYS, root_gains, root_times,
                    short_times)
 
@@ -206,6 +206,31 @@ def sizes_chart(results):
                           'Rays through one mesh cut finer and finer: speed beside Embree')
 
 
+def batches_chart(results):
+    """Speed of calls against the number of their rays: ours, our loop of single rays, Embree's modes."""
+    figure, panels = plot_style.plt.subplots(2, 3, figsize=(8.4, 5.4), layout='constrained', sharex=True, sharey='col')
+    scene, shown = results.names('scene')[0], []
+    lines = {'raylanes': 'automatic', 'raylanes, a loop of calls': 'call', 'Embree, single rays': 'single',
+             'packets of 8': 'packet8', 'packets of 16': 'packet16', 'streams': 'stream'}
+    for row_of_panels, path in zip(panels, TWO_PATHS):
+        for axes, rays in zip(row_of_panels, ('primary', 'shadow', 'diffuse')):
+            for (colour, marker), (label, mode) in zip(plot_style.SERIES, lines.items()):
+                sizes, speeds = speeds_by_batch(results, scene, rays, path, mode)
+                axes.plot(sizes, speeds, '--' if mode == 'call' else '-', marker=marker, color=colour, markersize=3,
+                          linewidth=1.2, label=label)
+                shown += [path, rays, mode, *(f'{speed:.2f}' for speed in speeds)]
+            axes.set_xscale('log')
+            axes.set_yscale('log')
+            axes.set_yticks([1, 2, 5, 10, 20, 50], ['1', '2', '5', '10', '20', '50'])
+            axes.yaxis.set_minor_formatter(lambda y, _: '')
+            axes.set_title(f'{KINDS[rays]}, {path}', fontsize=9, loc='left')
+        row_of_panels[0].set_ylabel('million rays a second')
+    for axes in panels[-1]:
+        axes.set_xlabel('rays in a call')
+    legend_over(figure, panels[0][0], 6)
+    return finished(figure, f'Rays through {scene}: speed by the number of rays in a call', ' '.join(shown))
+
+
 def cliffs_chart(results):
     """Time of square roots against the share of zeros, and of numbers that are subnormal."""
     figure, panels = plot_style.plt.subplots(1, 2, figsize=(8.4, 3.2), layout='constrained', sharey=True)
@@ -235,5 +260,5 @@ def finished(figure, description, shown):
 # By picture: the kind of file, whose newest one it shows, and who draws it.
 CHARTS = {'rays': ('rays', rays_chart), 'roots': ('roots', roots_chart), 'lengths': ('lengths', lengths_chart),
           'sizes': ('sizes', sizes_chart), 'cliffs': ('cliffs', cliffs_chart), 'short': ('short', short_chart),
-          'few': ('short', few_chart),
+          'few': ('short', few_chart), 'batches': ('batches', batches_chart),
           'other_roots': ('other_roots', other_roots_chart)}

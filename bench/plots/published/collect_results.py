@@ -30,6 +30,8 @@ KEYS = {
     'modes': ('scene', 'triangles', 'pixels', 'rays', 'ray_count', 'path', 'mode', 'mrays_per_second', 'spread'),
     'parts': ('scene', 'triangles', 'parts', 'rays', 'ray_count', 'path', 'contender', 'mode', 'mrays_per_second',
               'spread', 'ratio', 'ratio_to', 'ratio_to_tree'),
+    'batches': ('scene', 'triangles', 'rays', 'ray_count', 'contender', 'path', 'mode', 'batch', 'build',
+                'mrays_per_second', 'spread', 'ratio', 'ratio_to', 'ratio_to_calls', 'ratio_to_robust'),
     'filters': ('scene', 'triangles', 'query', 'rays', 'ray_count', 'contender', 'path', 'mrays_per_second'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
@@ -76,6 +78,9 @@ def is_shown(kind, row):
         return row['kernel'] == 'triangle' and row['form'] == '1xN' and row['path'] in ('avx2', 'avx512')
     if kind == 'parts':
         return row['contender'].startswith('scene')
+    if kind == 'batches':
+        is_rival = row['build'] != 'robust' and not re.search('^call|_packed$', row['mode'])
+        return row['contender'] == 'raylanes' or is_rival
     return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes', 'skips') or row['contender'] == 'raylanes'
 
 

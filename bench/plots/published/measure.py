@@ -57,6 +57,10 @@ COMMANDS = {
                for case in (each(SCENE=['teapot', 'bunny'], K=[0]) + each(SCENE=['dragon'], K=[0, 2, 3]) +
                             each(SCENE=['sponza', 'armadillo', 'staircase'], K=[0]))
                for size in each(SIZE=['64x64', '256x256', '1024x1024'])]),
+    'batches': ('raylanes trace SCENE --size 512x512 --order tiles --mode automatic,call --batch '
+                '1,2,4,8,16,32,64,128,256,512,1024,4096,16384,65536,262144 --rays primary,shadow,diffuse --path '
+                'avx512,avx2 --against embree --seconds 1',
+                each(SCENE=['sibenik', 'kitchen'])),
     'calls': ('raylanes trace SCENE --mode call --against embree --rays primary,shadow,diffuse --path avx512,avx2 '
               '--size 256x256 --seconds 1',
               each(SCENE=['bunny', 'dragon', 'sibenik', 'sponza', 'classroom', *SIX[3:]])),

@@ -45,6 +45,21 @@ class Results:
         return mean(row[key] for row in self.where(**values))
 
 
+def speeds_by_batch(results, scene, rays, path, mode):
+    """(sizes of batches, million rays a second of a mode at each). Modes that take any number of rays in the same way
+    have one speed; Embree's have the best of their trees and hints."""
+    sizes = sorted({row['batch'] for row in results.where(mode='automatic')})
+    rows = [row for row in results.where(scene=scene, rays=rays) if row['path'].removeprefix('embree-') == path and
+            row['mode'].removesuffix('_coherent') == mode]
+    speeds = {}
+    for row in rows:
+        speeds[row['batch']] = max(row['mrays_per_second'], speeds.get(row['batch'], 0))
+    if len(speeds) == 1:
+        (least, speed), = speeds.items()
+        speeds = {size: speed for size in sizes if size >= least}
+    return sorted(speeds), [speeds[size] for size in sorted(speeds)]
+
+
 def table(head, lines):
     return [f"| {' | '.join(head)} |", '|---' * len(head) + '|', *(f"| {' | '.join(line)} |" for line in lines)]
 

@@ -151,6 +151,21 @@ def parts_table(results):
         *table_of('scene_moving', ('ratio',), ["moving: calls × Embree's instances", 'moving: batches × the same'])]
 
 
+def batches_table(results):
+    """Batches by the number of their rays: speed by a loop of calls, and by Embree's best with no more rays a call."""
+    kinds = results.names('rays')
+
+    def cell(key, path, **case):
+        return pair(results.one(path=path, mode='automatic', rays=kind, **case)[key] for kind in kinds)
+
+    return table(['scene, rays in a call', *(f'{path}: × {rival}' for path in TWO_PATHS
+                                             for rival in ('a loop of calls', 'Embree'))],
+                 [[f'{scene}, {batch:,}', *(cell(key, path, scene=scene, batch=batch) for path in TWO_PATHS
+                                            for key in ('ratio_to_calls', 'ratio'))]
+                  for scene in results.names('scene')
+                  for batch in sorted({row['batch'] for row in results.where(mode='automatic')})])
+
+
 def modes_table(results):
     """The time of automatic by the least of any mode and of a loop of calls, for each size of picture."""
     def regret(path, **case):
@@ -192,8 +207,9 @@ def cliffs_table(results):
     return table(['case', 'exact, ns', 'watertight, ns'], lines)
 
 
-TABLES = {'sizes': ('sizes', sizes_table), 'parts': ('parts', parts_table), 'modes': ('modes', modes_table),
-          'cliffs': ('cliffs', cliffs_table), 'cliff_roots': ('cliffs', roots.cliff_roots_table),
+TABLES = {'sizes': ('sizes', sizes_table), 'batches': ('batches', batches_table), 'parts': ('parts', parts_table),
+          'modes': ('modes', modes_table), 'cliffs': ('cliffs', cliffs_table),
+          'cliff_roots': ('cliffs', roots.cliff_roots_table),
           'short_roots': ('short', roots.short_roots_table), 'doubles': ('doubles', doubles_table),
           'rays': ('rays', rays_table), 'calls': ('calls', calls_table), 'exact': ('exact', exact_table),
           'roots': ('roots', roots.roots_table), 'lengths': ('lengths', roots.lengths_table),
