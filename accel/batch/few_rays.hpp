@@ -1,6 +1,7 @@
 // Batches of few rays: the loop of calls with one ray, behind as few checks as those calls have.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -13,7 +14,8 @@
 namespace raylanes {
 
 // Fewer rays gain nothing from each other: what is found out about a batch, and streams, take more time than the loop.
-// If single rays wait for memory, more of them fly (kernels/traverse/fused/in_flight.hpp).
+// If single rays wait for memory or ask for nearest hits of doubles, more of them fly
+// (kernels/traverse/fused/in_flight.hpp).
 inline constexpr std::size_t min_batch = 64, min_flying_batch = 32;
 inline std::size_t batch_size_of(const TreeView& tree) {
   return tree.rays_wait ? min_flying_batch : min_batch;
@@ -31,6 +33,7 @@ class FewRays {
   FewRays(const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count, const Options& options,
           std::size_t limit)
       : rays_(static_cast<const AnyRay*>(rays.first)), answers_(answers), size_(rays.count) {
+    if (std::is_same_v<AnyRay, RayD> && !only_decides) limit = std::min(limit, min_flying_batch);
     const bool is_plain = size_ < limit && count == size_ && answers != nullptr && lie_plain(rays) &&
                           options.active == nullptr && options.progress == nullptr &&
                           options.after.first == nullptr && options.after.count == 0 &&
@@ -40,7 +43,6 @@ class FewRays {
   }
   explicit operator bool() const { return rays_ != nullptr; }
   bool may_be_packet() const {
-    constexpr bool only_decides = std::is_same_v<Answer, std::uint8_t>;
     return !only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin;
   }
   // answers[i] = call(rays[i], i)
@@ -50,6 +52,7 @@ class FewRays {
   }
 
  private:
+  static constexpr bool only_decides = std::is_same_v<Answer, std::uint8_t>;
   static bool are_apart(const void* a, std::size_t bytes_of_a, const void* b, std::size_t bytes_of_b) {
     const auto at_a = reinterpret_cast<std::uintptr_t>(a), at_b = reinterpret_cast<std::uintptr_t>(b);
     return at_b - at_a >= bytes_of_a && at_a - at_b >= bytes_of_b;

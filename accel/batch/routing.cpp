@@ -14,6 +14,10 @@ namespace {
 
 // Measured numbers of rays from which these pay: streams of coherent rays, packets of these.
 constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512;
+// Streams of rays that are not coherent pay from so many on, in trees whose visited boxes most rays share and in the
+// rest. In the rest, rays from outside mostly hit one of the first triangles on their way: single rays find it sooner.
+constexpr StreamSizes streams_of_shared{384, 320}, streams_of_rest{1536, 1024};
+constexpr std::size_t min_stream_from_outside = 8192;
 // So many rays of a batch at a time are searched for a shared end, if the caller says that there are several.
 constexpr std::size_t rays_of_an_end = 4096;
 
@@ -49,6 +53,11 @@ bool are_few(const TreeView& tree, const TraceBatch& batch) {
   const StreamSizes from = tree.streams_from;
   return batch.size < (batch.occluded != nullptr ? from.occluded : from.closest);
 }
+bool are_few_from_outside(const TreeView& tree, const TraceBatch& batch) {
+  return batch.hits != nullptr && tree.streams_from.closest == streams_of_rest.closest &&
+         batch.size < min_stream_from_outside &&
+         begin_outside(std::span(batch.rays, batch.size), tree.bounds);
+}
 
 // The mode of rays that have a common point, or that neighbours follow.
 TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch,
@@ -69,7 +78,7 @@ TraversalMode mode_of_coherent(const TreeView& tree, const TraversalChoice& choi
 
 // The mode of rays that have nothing in common.
 TraversalMode mode_apart(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  if (are_few(tree, batch)) return TraversalMode::single;
+  if (are_few(tree, batch) || are_few_from_outside(tree, batch)) return TraversalMode::single;
   if (choice.nearest_triangle == nullptr) return TraversalMode::stream;
   const TrianglesOfRays triangles = triangles_of_a_ray<float>(
       tree, choice.nearest_triangle, {batch.rays, batch.size}, SharedApex::none, {}, true);
@@ -90,13 +99,11 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
   if (!coherent || rays.size() < 3) return mode_apart(tree, choice, batch);
   return mode_of_coherent(tree, choice, batch, SharedApex::none, {});
 }
-// Some rays at a time, where they wait for memory and are not few; otherwise the loop of calls with one ray, which has
-// less to do for each.
-void run_singly(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  const bool fly = may_fly(tree, choice) && batch.size >= min_flying_batch;
+// The loop of calls with one ray, which has less to do for each than a batch of single rays.
+void run_calls(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const ChosenCallRow* const chosen = choice.chosen;
   const CallRow* const call = choice.call;
-  if (fly || (chosen == nullptr && call == nullptr)) return run(tree, *choice.single, batch);
+  if (chosen == nullptr && call == nullptr) return run(tree, *choice.single, batch);
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Ray& ray = batch.rays[i];
     const std::uint32_t skipped = batch.skip != nullptr ? batch.skip[i] : no_primitive;
@@ -112,8 +119,9 @@ void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& cho
   batch.shared_point = SharedApex::none;
   // Streams pad boxes of trees far from zero by much.
   if (mode == TraversalMode::stream && tree.max_fused_size == 0.0f) mode = TraversalMode::single;
-  if (mode == TraversalMode::single && choice.mode == TraversalMode::automatic)
-    return run_singly(tree, choice, batch);
+  const bool fly = may_fly(tree, choice) && batch.size >= min_flying_batch;
+  if (mode == TraversalMode::single && choice.mode == TraversalMode::automatic && !fly)
+    return run_calls(tree, choice, batch);
   run(tree,
       mode == TraversalMode::packet   ? *choice.packet
       : mode == TraversalMode::stream ? *choice.stream
@@ -121,6 +129,8 @@ void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& cho
       batch);
 }
 void run_others(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  if (choice.mode == TraversalMode::automatic && pass_by(std::span(batch.rays, batch.size), tree.bounds))
+    return run_calls(tree, choice, batch);
   run_by(mode_of_others(tree, choice, batch), tree, choice, batch);
 }
 // Rays whose common end the caller knows, if packets are wanted and may pay.
@@ -198,7 +208,7 @@ bool are_mostly_shared(double shared_visits) {
 }  // namespace
 
 StreamSizes streams_from(double shared_visits) {
-  return are_mostly_shared(shared_visits) ? StreamSizes{128, 64} : StreamSizes{512, 320};
+  return are_mostly_shared(shared_visits) ? streams_of_shared : streams_of_rest;
 }
 bool do_rays_wait(double shared_visits, std::size_t bytes) {
   constexpr std::size_t second_cache = std::size_t{1} << 23;  // and a part of the third

@@ -73,6 +73,12 @@ const Ray& max_different(std::span<const Ray> rays, std::size_t step) {
   return *best;
 }
 
+// The i-th of places spread over `size` so that no rows or columns show: multiples of the golden ratio.
+std::size_t spread(std::size_t i, std::size_t size) {
+  const double turns = 0.6180339887498949 * static_cast<double>(i);
+  return static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(size));
+}
+
 }  // namespace
 
 template <class AnyRay>
@@ -111,6 +117,24 @@ bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box) {
   }
   return true;
 }
+
+template <class AnyRay, class AnyBox>
+bool pass_by(std::span<const AnyRay> rays, const AnyBox& box) {
+  const std::size_t looks = std::clamp<std::size_t>(rays.size() / 32, 3, looked_at);
+  for (std::size_t i = 0; i < looks; ++i) {
+    const AnyRay& ray = rays[spread(i, rays.size())];
+    double near = ray.tmin, far = ray.tmax;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double origin = ray.origin[axis], direction = ray.direction[axis],
+                   a = (box.lo[axis] - origin) / direction, b = (box.hi[axis] - origin) / direction;
+      near = std::max(near, std::min(a, b)), far = std::min(far, std::max(a, b));
+    }
+    if (near <= far && near < HUGE_VAL) return false;
+  }
+  return true;
+}
+template bool pass_by(std::span<const Ray>, const Box&);
+template bool pass_by(std::span<const RayD>, const BoxD&);
 template std::size_t count_of_origin(std::span<const Ray>);
 template std::size_t count_of_origin(std::span<const RayD>);
 template std::size_t count_before_shared_origin(std::span<const Ray>);
@@ -130,7 +154,8 @@ bool is_near(const AnyPoint& point, const AnyBox& box, double most_sizes) {
 template bool is_near(const Float3&, const Box&, double);
 template bool is_near(const Double3&, const BoxD&, double);
 
-bool begin_outside(std::span<const RayD> rays, const BoxD& box) {
+template <class AnyRay, class AnyBox>
+bool begin_outside(std::span<const AnyRay> rays, const AnyBox& box) {
   const std::size_t step = std::max<std::size_t>(1, rays.size() / looked_at);
   std::size_t outside = 0, looked = 0;
   for (std::size_t i = 0; i < rays.size(); i += step, ++looked)
@@ -141,6 +166,8 @@ bool begin_outside(std::span<const RayD> rays, const BoxD& box) {
       }
   return 2 * outside > looked;
 }
+template bool begin_outside(std::span<const Ray>, const Box&);
+template bool begin_outside(std::span<const RayD>, const BoxD&);
 
 std::optional<Float3> shared_end_of(std::span<const Ray> rays) {
   if (rays.size() < min_shared_point) return {};
@@ -181,12 +208,6 @@ Point unit(const Point& a) {
 }
 Point cross(const Point& a, const Point& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-// The i-th of places spread over `size` so that no rows or columns show: multiples of the golden ratio.
-std::size_t spread(std::size_t i, std::size_t size) {
-  const double turns = 0.6180339887498949 * static_cast<double>(i);
-  return static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(size));
 }
 
 // The solid angle that directions fill, were they spread evenly over a rectangle: 12 times the root of their two

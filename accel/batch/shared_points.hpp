@@ -31,8 +31,12 @@ std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 // directions agree within a fiftieth, and origins within a fiftieth of the box.
 template <class AnyRay, class AnyBox>
 bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box);
+// Whether all of some rays spread over a batch pass the box by: most searches end at the root.
+template <class AnyRay, class AnyBox>
+bool pass_by(std::span<const AnyRay> rays, const AnyBox& box);
 // Whether most rays of some spread over them begin outside the box.
-bool begin_outside(std::span<const RayD> rays, const BoxD& box);
+template <class AnyRay, class AnyBox>
+bool begin_outside(std::span<const AnyRay> rays, const AnyBox& box);
 
 // How a ray meets the nearest triangle of a tree, as TraversalKernels and DoubleRayKernels have it.
 template <class T>

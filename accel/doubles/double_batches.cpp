@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../batch/few_rays.hpp"
 #include "../batch/routing.hpp"
 #include "../batch/shared_points.hpp"
 #include "../queries/next.hpp"
@@ -41,6 +42,11 @@ struct RowsOfPath {
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
 void run_apart(const RowsOfPath& rows, const DoubleTreeView& tree, const DoubleBatch& batch) {
   const bool is_closest = batch.hits != nullptr;
+  if (is_closest && pass_by(std::span(batch.rays, batch.size), tree.bounds)) {
+    for (std::size_t i = 0; i < batch.size; ++i)
+      batch.hits[i] = rows.kernels.closest_of_ray(tree, batch.rays[i], Facing::any, no_primitive);
+    return;
+  }
   const Kernel single = is_closest ? rows.kernels.closest : rows.kernels.any,
                stream = is_closest ? rows.kernels.closest_stream : rows.kernels.any_stream;
   (should_stream(tree, {batch.rays, batch.size}, rows.may_fly, is_closest) ? stream : single)(tree, batch);
@@ -106,7 +112,7 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, co
     batch.facing = options.facing, batch.skip = call.skip, batch.after = last, batch.scratch = call.scratch;
     return batch;
   };
-  if (rays.size() >= min_shared_point && takes_all(options) && !looks_behind)
+  if (rays.size() >= min_flying_batch && takes_all(options) && !looks_behind)
     return over_calls(
         plan_of(options, rays.size()), rays, HitSink<HitD>{hits},
         [&](std::size_t n) { return scratch_bytes(kernels, n); },

@@ -107,7 +107,7 @@ struct FlyingDoubles {
 };
 
 inline bool fly(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  return tree.tree.rays_wait && batch.size >= min_flights;
+  return rays_fly(tree.tree, batch.hits == nullptr) && batch.size >= min_flights;
 }
 template <class Asked>
 [[gnu::noinline, gnu::flatten]] void closest_doubles_in_flight(const DoubleTreeView& tree,

@@ -164,14 +164,31 @@ TEST(Neighbours, are_found) {
   EXPECT_FALSE(are_coherent(std::span<const Ray>(rays), box));
 }
 
+TEST(Packets, rays_pass_a_box_by) {
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  std::vector<Ray> rays(40, Ray{{2, 0, 0}, 0, {0, -1, 0}});
+  const auto all_pass = [&] { return pass_by(std::span<const Ray>(rays), box); };
+  EXPECT_TRUE(all_pass()) << "along an axis";
+  rays.assign(40, {{2, 2, 2}, 0, {-1, -1, -4}});
+  EXPECT_TRUE(all_pass());
+  rays.assign(40, {{2, 2, 2}, 0, {-1, -1, -1}, 0.5f});
+  EXPECT_TRUE(all_pass()) << "that end before it";
+  rays[0].tmax = 2;
+  EXPECT_FALSE(all_pass()) << "but for one that is looked at";
+  rays.assign(40, {{0.5f, 0, 5}, 0, {0, 0, -1}});
+  EXPECT_FALSE(all_pass()) << "within two pairs of planes";
+  EXPECT_FALSE(pass_by(std::span<const Ray>(rays), Box{{-1, -1, 0}, {1, 1, 0}})) << "a flat box";
+}
+
 TEST(Packets, most_rays_begin_outside_a_box) {
   const BoxD box{{0, 0, 0}, {1, 1, 1}};
   std::vector<RayD> rays(100, RayD{.origin = {0.5, 0.5, 0.5}, .direction = {1, 0, 0}});
-  EXPECT_FALSE(begin_outside(rays, box));
+  const auto are_outside = [&] { return begin_outside(std::span<const RayD>(rays), box); };
+  EXPECT_FALSE(are_outside());
   for (std::size_t i = 0; i < 60; ++i) rays[i].origin[i % 3] = i % 2 == 0 ? -1 : 2;
-  EXPECT_TRUE(begin_outside(rays, box));
+  EXPECT_TRUE(are_outside());
   for (std::size_t i = 0; i < 30; ++i) rays[i].origin = {0, 1, 1};
-  EXPECT_FALSE(begin_outside(rays, box));
+  EXPECT_FALSE(are_outside());
 }
 
 TEST(SharedEnds, see_what_rays_see) {
