@@ -74,7 +74,7 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
   thread_local std::vector<raylanes::Ray> copies;
   thread_local std::vector<raylanes::SceneHit> hits;
   thread_local std::vector<std::uint8_t> occluded;
-  raylanes::TraceOptions options;
+  raylanes::TraceOptions options{.mask = mask};
   if (is_coherent(context)) {
     options.hint = raylanes::BatchHint::coherent;
     if (are_dense && rays.size() <= most_in_packet) options.mode = raylanes::TraversalMode::packet;
@@ -86,13 +86,13 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
       copies[i] = rays.is_active(begin + i) ? rays.ray(begin + i, built.is_robust) : raylanes::Ray();
     if (!rays.with_hits()) {
       occluded.resize(size);
-      built.placed.occluded(copies, occluded, options, mask);
+      built.placed.occluded(copies, occluded, options);
       for (std::size_t i = 0; i < size; ++i)
         if (occluded[i] != 0) rays.set_far(begin + i, minus_infinity);
       continue;
     }
     hits.resize(size);
-    built.placed.closest(copies, hits, options, mask);
+    built.placed.closest(copies, hits, options);
     note_density(hits);
     for (std::size_t i = 0; i < size; ++i)
       if (const raylanes::SceneHit& found = hits[i]) {

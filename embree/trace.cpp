@@ -134,13 +134,13 @@ bool find_placed(const Built& built, RTCIntersectContext* context, Traced<neares
   const bool has_all = built.is_unmasked && ray.mask != 0;
   if constexpr (nearest) {
     const raylanes::SceneHit found =
-        has_all ? built.placed.closest(whole) : built.placed.closest(whole, {}, ray.mask);
+        has_all ? built.placed.closest(whole) : built.placed.closest(whole, {.mask = ray.mask});
     if (!found) return false;
     ray.tfar = found.t;
     put_placed(built, found, context->instID[0], both.hit);
     return true;
   } else {
-    return has_all ? built.placed.occluded(whole) : built.placed.occluded(whole, {}, ray.mask);
+    return has_all ? built.placed.occluded(whole) : built.placed.occluded(whole, {.mask = ray.mask});
   }
 }
 

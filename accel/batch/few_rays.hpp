@@ -29,6 +29,7 @@ inline constexpr std::size_t min_packet = 32;
 template <class AnyRay, class Answer>
 class FewRays {
  public:
+  FewRays() = default;  // many
   template <class Options>
   FewRays(const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count, const Options& options,
           std::size_t limit)
@@ -69,9 +70,9 @@ class FewRays {
     return are_apart(skip.first, size_ * skip.stride + of_one, answers_, size_ * sizeof(Answer));
   }
 
-  const AnyRay* rays_;
-  Answer* answers_;
-  std::size_t size_;
+  const AnyRay* rays_ = nullptr;
+  Answer* answers_ = nullptr;
+  std::size_t size_ = 0;
 };
 
 }  // namespace raylanes

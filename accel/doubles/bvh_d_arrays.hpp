@@ -50,9 +50,10 @@ inline CornersOf<double> corners_of(const DoubleTreeView& tree, std::uint32_t le
 }
 
 // The view of a tree; a null pointer is the empty tree.
-inline DoubleTreeView view_of(const std::unique_ptr<BvhDArrays>& tree) {
-  return tree ? tree->view()
-              : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
+inline DoubleTreeView view_of(const BvhDArrays* tree) {
+  return tree != nullptr
+             ? tree->view()
+             : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
 }
 
 // As BvhD::each_triangle(): without those that collapsed at a refit.

@@ -209,7 +209,13 @@ void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, s
 // How lists are shared out among threads.
 template <class T>
 BatchPlan plan_of(const ListMaker<T>& maker) {
-  return {maker.threads, maker.counters, rays_alone, 256, 8, rays_together, maker.progress};
+  return {.threads = maker.threads,
+          .counters = maker.counters,
+          .max_call = rays_alone,
+          .min_part = 256,
+          .parts_per_thread = 8,
+          .max_part = rays_together,
+          .progress = maker.progress};
 }
 
 // Sorted, each primitive once: entries of one primitive are equal.

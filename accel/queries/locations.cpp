@@ -171,42 +171,13 @@ void find_winding_numbers(const Surface<T>& surface, const VertexRecords<T>& poi
                });
 }
 
+template void locate_points(const Surface<float>&, const VertexView&, std::span<Location>,
+                            const LocateOptions&);
 template void locate_points(const Surface<double>&, const VertexViewD&, std::span<Location>,
                             const LocateOptions&);
+template void find_winding_numbers(const Surface<float>&, const VertexView&, std::span<float>,
+                                   const WindingOptions&);
 template void find_winding_numbers(const Surface<double>&, const VertexViewD&, std::span<double>,
                                    const WindingOptions&);
-
-namespace {
-
-// The triangles of a tree in the order of their primitives, each once, without those that have collapsed.
-std::vector<Corners> triangles_of(const Leaves& leaves) {
-  const std::vector<std::uint64_t> places = leaves.places();
-  std::vector<Corners> triangles;
-  triangles.reserve(places.size());
-  for (const std::uint64_t place : places) {
-    const Triangle triangle = leaves.triangle(place);
-    if (has_equal_corners(triangle.corner[0], triangle.corner[1], triangle.corner[2])) continue;
-    Corners& corners = triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) corners.vertex[k] = triangle.corner[k];
-  }
-  return triangles;
-}
-
-Surface<float> surface_of(const TracedTree& tree) {
-  const TreeLeaves* const leaves = tree.leaves;
-  return {tree.view, tree.has_parts, leaves != nullptr ? &leaves->boundary : nullptr,
-          [leaves] { return triangles_of(leaves->corners); }};
-}
-
-}  // namespace
-
-void TriangleTree::locate(VertexView points, std::span<Location> locations,
-                          const LocateOptions& options) const {
-  locate_points(surface_of(traced()), points, locations, options);
-}
-void TriangleTree::winding_numbers(VertexView points, std::span<float> numbers,
-                                   const WindingOptions& options) const {
-  find_winding_numbers(surface_of(traced()), points, numbers, options);
-}
 
 }  // namespace raylanes

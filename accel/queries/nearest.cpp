@@ -10,9 +10,7 @@
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
-#include "../batch/checked_call.hpp"
-#include "../batch/few_rays.hpp"
-#include "lists.hpp"
+#include "answers/ray_answers.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
@@ -120,36 +118,6 @@ bool is_usual_but_chosen(const TraceOptions& options) {
          static_cast<std::size_t>(options.hint) < batch_hint_names.size() && options.threads >= 0 &&
          options.counters == nullptr && static_cast<std::size_t>(options.grade) < grade_names.size();
 }
-// Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
-bool is_quick(const TreeView* ready) {
-  return ready != nullptr && !QuietFloats::are_wanted();
-}
-// A batch of few rays, by the rows of calls with one ray. False if the batch is to go another way.
-template <class Answer, class OfUsual, class OfChosen>
-bool trace_few(const TreeView* ready, const RayView& rays, Answer* answers, std::size_t count,
-               const TraceOptions& options, OfUsual usual, OfChosen of_chosen) {
-  if (!is_quick(ready)) return false;
-  const FewRays few(rays, answers, count, options, batch_size_of(*ready));
-  if (!few || few.may_be_packet()) return false;
-  if (const CallRow* const row = usual_row(options)) {
-    few.trace([&, call = row->*usual](const Ray& ray, std::size_t) { return call(*ready, ray); });
-    return true;
-  }
-  const ChosenCallRow* const row = chosen_row(options, rays.count);
-  if (row == nullptr) return false;
-  few.trace([&, call = row->*of_chosen](const Ray& ray, std::size_t i) {
-    return call(*ready, ray, options.facing, skipped_of(options, i));
-  });
-  return true;
-}
-void trace_occluded(const TracedTree& tree, const RaySource& rays, std::span<std::uint8_t> occluded,
-                    const TraceOptions& options) {
-  const CheckedCall call("trace", rays, occluded, options);
-  Traversal traversal = checked_traversal(tree, call.options);
-  traversal.choice.facing = rays.sides(options.facing);
-  trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
-}
-
 }  // namespace
 
 const CallRow* usual_row(const TraceOptions& options) {
@@ -179,14 +147,6 @@ const CallRow& default_row() {
   return kernels_of(path_in_use()).traversal.call.row[test][grade];
 }
 
-void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
-                const TraceOptions& options) {
-  const CheckedCall call("trace", rays, hits, options);
-  const Traversal traversal = checked_traversal(tree, call.options);
-  if (options.after.first != nullptr) return trace_next(tree, call.rays, hits, call.options);
-  trace(traversal.tree, traversal.choice, call.rays, HitSink<Hit>{hits}, options.threads);
-}
-
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options) {
   const std::size_t test = checked_test(options.test);
   const std::size_t grade = checked_index("trace", "grade", options.grade, grade_names.size());
@@ -202,97 +162,156 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   return traversal;
 }
 
-Hit TriangleTree::closest(const Ray& ray) const {
-  return is_quick(ready_) ? default_row().closest(*ready_, ray) : closest_by_options(ray, {});
+namespace {
+
+// A tree's kernels of calls with one ray, by options.
+class KernelsOfTree {
+ public:
+  // `ready`: null if there are none to be used.
+  KernelsOfTree(const TreeView* ready, const TraceOptions& options, std::size_t rays)
+      : ready_(ready),
+        options_(options),
+        rows_(ready != nullptr ? RowsOfCalls(options, rays) : RowsOfCalls()) {}
+  explicit operator bool() const { return static_cast<bool>(rows_); }
+  Hit closest(const Ray& ray, std::size_t i) const {
+    return rows_.closest(*ready_, ray, options_.facing, [&] { return skipped_of(options_, i); });
+  }
+  bool any(const Ray& ray, std::size_t i) const {
+    return rows_.any(*ready_, ray, options_.facing, [&] { return skipped_of(options_, i); });
+  }
+
+ private:
+  const TreeView* ready_;
+  const TraceOptions& options_;
+  RowsOfCalls rows_;
+};
+
+void require_filterable(const TraceOptions& options) {
+  if (options.test != TriangleTest::exact)
+    throw std::invalid_argument("trace: a filter takes the test exact; other tests have no order of hits");
 }
-Hit TriangleTree::closest(const Ray& ray, const TraceOptions& options) const {
-  if (!is_quick(ready_)) return closest_by_options(ray, options);
-  if (const CallRow* const row = usual_row(options)) return row->closest(*ready_, ray);
-  const ChosenCallRow* const chosen = chosen_row(options);
-  return chosen != nullptr ? chosen->closest(*ready_, ray, options.facing, skipped_by_one(options))
-                           : closest_by_options(ray, options);
-}
-bool TriangleTree::occluded(const Ray& ray) const {
-  return is_quick(ready_) ? default_row().any(*ready_, ray) : occluded_by_options(ray, {});
-}
-bool TriangleTree::occluded(const Ray& ray, const TraceOptions& options) const {
-  if (!is_quick(ready_)) return occluded_by_options(ray, options);
-  if (const CallRow* const row = usual_row(options)) return row->any(*ready_, ray);
-  const ChosenCallRow* const chosen = chosen_row(options);
-  return chosen != nullptr ? chosen->any(*ready_, ray, options.facing, skipped_by_one(options))
-                           : occluded_by_options(ray, options);
-}
+
+}  // namespace
+
+template <>
+class RayDoor<TriangleTree> {
+ public:
+  static constexpr const char* name = "trace";
+
+  explicit RayDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeOf::ready(tree)) {}
+
+  Hit closest(const Ray& ray) const {
+    return is_quick() ? default_row().closest(*ready_, ray) : closest_by(ray, {});
+  }
+  bool any(const Ray& ray) const { return is_quick() ? default_row().any(*ready_, ray) : any_by(ray, {}); }
+  KernelsOfTree kernels(const TraceOptions& options, std::size_t rays) const {
+    return {is_quick() ? ready_ : nullptr, options, rays};
+  }
+  template <class Answer>
+  FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
+                                const TraceOptions& options) const {
+    const FewRays few(rays, answers, count, options, is_quick() ? batch_size_of(*ready_) : 0);
+    return few && few.may_be_packet() ? FewRays<Ray, Answer>() : few;
+  }
+  [[gnu::cold, gnu::noinline]] Hit closest_by(const Ray& ray, const TraceOptions& options) const {
+    Hit hit;
+    TraceBatch batch;
+    batch.hits = &hit;
+    trace_one(ray, options, batch, &TraversalRow::closest);
+    return hit;
+  }
+  [[gnu::cold, gnu::noinline]] bool any_by(const Ray& ray, const TraceOptions& options) const {
+    std::uint8_t occluded = 0;
+    TraceBatch batch;
+    batch.occluded = &occluded;
+    trace_one(ray, options, batch, &TraversalRow::any);
+    return occluded != 0;
+  }
+  void trace(const RaySource& rays, const HitView& hits, const TraceOptions& options) const {
+    const CheckedCall call(name, rays, hits, options);
+    const TracedTree tree = TreeOf::traced(tree_);
+    const Traversal traversal = checked_traversal(tree, call.options);
+    if (options.after.first != nullptr) return trace_next(tree, call.rays, hits, call.options);
+    raylanes::trace(traversal.tree, traversal.choice, call.rays, HitSink<Hit>{hits}, options.threads);
+  }
+  void trace(const RaySource& rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
+    const CheckedCall call(name, rays, occluded, options);
+    Traversal traversal = checked_traversal(TreeOf::traced(tree_), call.options);
+    traversal.choice.facing = rays.sides(options.facing);
+    raylanes::trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded},
+                    options.threads);
+  }
+
+  static void require_order(const TraceOptions& options) { require_exact(options); }
+  TreeLists<float, TracedTree> lists(const TraceOptions&) const { return {TreeOf::traced(tree_)}; }
+  KeptCalls<TreeView, float> kept_at_once() const {
+    return {is_quick() ? &kernels_of(path_in_use()).queries.plain.kept : nullptr, ready_};
+  }
+  Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                   const TraceOptions& options) const {
+    require_filterable(options);
+    if (options.counters != nullptr)
+      return first_kept(rejection, options,
+                        [&](const TraceOptions& next) { return tree_.closest(ray, next); });
+    const TreeView tree = tree_by(options);
+    const KeptCall<float> call(rejection, options);
+    const QuietFloats quiet;
+    return kernels_of(checked_path(options.path)).queries.plain.kept.closest(tree, ray, call.asked);
+  }
+  bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const TraceOptions& options) const {
+    require_filterable(options);
+    if (options.counters != nullptr) return static_cast<bool>(closest_kept(ray, rejection, options));
+    const TreeView tree = tree_by(options);
+    const KeptCall<float> call(rejection, options);
+    const QuietFloats quiet;
+    return kernels_of(checked_path(options.path)).queries.plain.kept.any(tree, ray, call.asked);
+  }
+
+  detail::KernelsOfCalls<TriangleTree> kernels_of_calls(const TraceOptions& options) const {
+    const RowsOfCalls rows = is_quick() ? RowsOfCalls(options, 1) : RowsOfCalls();
+    if (rows.usual != nullptr) return {ready_, rows.usual->closest, rows.usual->any};
+    if (rows.chosen != nullptr) return {ready_, nullptr, nullptr, rows.chosen->closest, rows.chosen->any};
+    return {};
+  }
+
+ private:
+  // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
+  bool is_quick() const { return ready_ != nullptr && !QuietFloats::are_wanted(); }
+  // The tree, if options are right. Usual ones need no rows of other kernels.
+  TreeView tree_by(const TraceOptions& options) const {
+    const TracedTree tree = TreeOf::traced(tree_);
+    return is_usual_kept(options) ? tree.view : checked_traversal(tree, options).tree;
+  }
+  void trace_one(const Ray& ray, const TraceOptions& options, TraceBatch& batch,
+                 decltype(&TraversalRow::any) row) const {
+    const TracedTree tree = TreeOf::traced(tree_);
+    const Traversal traversal = checked_traversal(tree, options);
+    const QuietFloats quiet;
+    const std::uint32_t skipped = skip_of_one(name, options);
+    if (batch.hits != nullptr) require_after(name, options.after, 1);
+    if (batch.hits != nullptr && options.after.first != nullptr) {
+      TraceOptions unreported = options;
+      unreported.progress = nullptr;
+      return trace_next(tree, {.records = RayView(&ray, 1), .skip = options.skip}, HitView(batch.hits, 1),
+                        unreported);
+    }
+    batch.rays = &ray, batch.size = 1, batch.counters = options.counters;
+    batch.facing = options.facing, batch.skip = &skipped;
+    (traversal.choice.single->*row)(traversal.tree, batch);
+  }
+
+  const TriangleTree& tree_;
+  const TreeView* ready_;
+};
+template class RayQueries<TriangleTree>;
 
 RayCalls<TriangleTree> TriangleTree::calls(const TraceOptions& options) const& {
   RayCalls<TriangleTree> calls(*this, options);
   checked_traversal(traced(), options);
   skip_of_one("trace", options), require_after("trace", options.after, 1);
   calls.options_.path = &checked_path(options.path);
-  if (!is_quick(ready_)) return calls;
-  if (const CallRow* const row = usual_row(calls.options_))
-    calls.kernels_ = {ready_, row->closest, row->any};
-  else if (const ChosenCallRow* const chosen = chosen_row(calls.options_))
-    calls.kernels_ = {ready_, nullptr, nullptr, chosen->closest, chosen->any};
+  calls.kernels_ = RayDoor<TriangleTree>(*this).kernels_of_calls(calls.options_);
   return calls;
-}
-
-Hit TriangleTree::closest_by_options(const Ray& ray, const TraceOptions& options) const {
-  const Traversal traversal = checked_traversal(traced(), options);
-  const QuietFloats quiet;
-  const std::uint32_t skipped = skip_of_one("trace", options);
-  require_after("trace", options.after, 1);
-  Hit hit;
-  if (options.after.first != nullptr) {
-    TraceOptions unreported = options;
-    unreported.progress = nullptr;
-    trace_next(traced(), {.records = RayView(&ray, 1), .skip = options.skip}, HitView(&hit, 1), unreported);
-    return hit;
-  }
-  TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.counters = options.counters;
-  batch.facing = options.facing, batch.skip = &skipped;
-  traversal.choice.single->closest(traversal.tree, batch);
-  return hit;
-}
-
-bool TriangleTree::occluded_by_options(const Ray& ray, const TraceOptions& options) const {
-  const Traversal traversal = checked_traversal(traced(), options);
-  const QuietFloats quiet;
-  std::uint8_t occluded = 0;
-  const std::uint32_t skipped = skip_of_one("trace", options);
-  TraceBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.occluded = &occluded, batch.counters = options.counters;
-  batch.facing = options.facing, batch.skip = &skipped;
-  traversal.choice.single->any(traversal.tree, batch);
-  return occluded != 0;
-}
-
-void TriangleTree::closest(RayView rays, HitView hits, const TraceOptions& options) const {
-  if (trace_few(ready_, rays, HitSink<Hit>{hits}.in_place(), hits.count, options, &CallRow::closest,
-                &ChosenCallRow::closest))
-    return;
-  trace_hits(traced(), source_of(rays, options), hits, options);
-}
-void TriangleTree::closest(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  trace_hits(traced(), source_of(rays, options), hits, options);
-}
-void TriangleTree::occluded(RayView rays, std::span<std::uint8_t> occluded,
-                            const TraceOptions& options) const {
-  if (trace_few(ready_, rays, occluded.data(), occluded.size(), options, &CallRow::any, &ChosenCallRow::any))
-    return;
-  trace_occluded(traced(), source_of(rays, options), occluded, options);
-}
-void TriangleTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                            const TraceOptions& options) const {
-  trace_occluded(traced(), source_of(rays, options), occluded, options);
-}
-void TriangleTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                                 const SegmentEnds& ends, const TraceOptions& options) const {
-  trace_occluded(traced(), source_of(Segments{from, points, ends}, options), occluded, options);
-}
-void TriangleTree::occluded_towards(const Float3& direction, VertexView points,
-                                    std::span<std::uint8_t> occluded, const TraceOptions& options) const {
-  trace_occluded(traced(), source_of(Segments{direction, points, {}, true}, options), occluded, options);
 }
 
 Box TriangleTree::bounds() const noexcept {

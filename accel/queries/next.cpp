@@ -1,7 +1,6 @@
-// The next hits, and filters, which are loops over batches of these.
+// The next hits of rays.
 #include "next.hpp"
 
-#include "passages.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
@@ -12,19 +11,6 @@ void require_exact(const TraceOptions& options) {
         "trace: what comes after a hit is asked of the test exact alone; others have no order of hits that "
         "holds");
 }
-
-namespace {
-
-auto filtered(const TracedTree& tree, const HitFilter& filter, const TraceOptions& options) {
-  const auto trace = [tree](const RaySource& rays, const HitView& hits, const TraceOptions& by) {
-    require_exact(by);
-    trace_hits(tree, rays, hits, by);
-  };
-  return FilteredCall<float, HitFilter, TraceOptions, decltype(trace), TreeLists<float, TracedTree>>{
-      "trace", filter, options, trace, {tree}};
-}
-
-}  // namespace
 
 void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
                 const TraceOptions& options) {
@@ -39,46 +25,6 @@ void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hi
                  batch.skip = call.skip;
                  kernels.next(view, batch);
                });
-}
-
-void TriangleTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
-                                    const TraceOptions& options) const {
-  filtered(traced(), filter, options).closest(rays, hits);
-}
-void TriangleTree::filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
-                                    const TraceOptions& options) const {
-  filtered(traced(), filter, options).closest(rays, hits);
-}
-void TriangleTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                     const TraceOptions& options) const {
-  filtered(traced(), filter, options).occluded(rays, occluded);
-}
-void TriangleTree::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                                     const HitFilter& filter, const TraceOptions& options) const {
-  filtered(traced(), filter, options).occluded(rays, occluded);
-}
-void TriangleTree::filtered_occluded_from(const Float3& from, VertexView points,
-                                          std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                          const SegmentEnds& ends, const TraceOptions& options) const {
-  filtered(traced(), filter, options).occluded_from(from, points, occluded, ends);
-}
-void TriangleTree::filtered_occluded_towards(const Float3& direction, VertexView points,
-                                             std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                             const TraceOptions& options) const {
-  filtered(traced(), filter, options).occluded_towards(direction, points, occluded);
-}
-
-Hit TriangleTree::closest_crossing(const Ray& ray, const TraceOptions& options) const {
-  require_exact(options);
-  return closest_passage<float>(*this, ray, options);
-}
-void TriangleTree::closest_crossing(RayView rays, HitView hits, const TraceOptions& options) const {
-  require_exact(options);
-  closest_passages<float>(*this, traced(), source_of(rays, options), hits, options);
-}
-void TriangleTree::closest_crossing(const RayArrays& rays, HitView hits, const TraceOptions& options) const {
-  require_exact(options);
-  closest_passages<float>(*this, traced(), source_of(rays, options), hits, options);
 }
 
 }  // namespace raylanes

@@ -11,7 +11,12 @@ namespace raylanes {
 
 // How next hits are shared out among threads.
 inline BatchPlan plan_of_next(int threads, TraceCounters* counters, const Progress* progress) {
-  return {threads, counters, rays_of_next_calls, 256, 8, max_rays_of_a_call, progress};
+  return {.threads = threads,
+          .counters = counters,
+          .max_call = rays_of_next_calls,
+          .min_part = 256,
+          .parts_per_thread = 8,
+          .progress = progress};
 }
 
 // Calls trace(call, last) until all active rays have their hits. Ray k of the call looks behind last[k]; `last` is null
@@ -48,62 +53,6 @@ void filter_hits(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, con
       may_turn_down);
 }
 
-// Calls with a filter, for all trees and scenes: trace(rays, hits, options) is their call without one, and finds what
-// is behind options.after. `call` begins messages. Hits behind those turned down come from lists, where there are some.
-template <class T, class Filter, class Options, class Trace, class Lists = NoLists, class AnyHit = HitOf<T>>
-struct FilteredCall {
-  const char* call;
-  const Filter& filter;
-  const Options& options;
-  Trace trace;
-  Lists lists = {};
-
-  // RayRecords or RayArraysOf<T>.
-  template <class Rays>
-  void closest(const Rays& rays, const HitRecords<AnyHit>& hits) const {
-    const CheckedCall checked(call, source_of(rays, options), hits, options);
-    find(checked.rays, hits, checked.options);
-  }
-  template <class Rays>
-  void occluded(const Rays& rays, std::span<std::uint8_t> occluded) const {
-    find_occluded(source_of(rays, options), occluded);
-  }
-  void occluded_from(const PointOf<T>& from, const VertexRecords<T>& points, std::span<std::uint8_t> occluded,
-                     const SegmentEndsOf<T>& ends) const {
-    find_occluded(source_of(SegmentsOf<T>{from, points, ends}, options), occluded);
-  }
-  void occluded_towards(const PointOf<T>& direction, const VertexRecords<T>& points,
-                        std::span<std::uint8_t> occluded) const {
-    find_occluded(source_of(SegmentsOf<T>{direction, points, {}, true}, options), occluded);
-  }
-
- private:
-  void find(const RaySourceOf<T>& rays, const HitRecords<AnyHit>& hits, const Options& by) const {
-    trace(rays, hits, by);
-    if constexpr (!std::is_same_v<Lists, NoLists>)
-      if (filter && lists)
-        return replace_from_lists(rays, hits, filter, Lists::have_streams,
-                                  [&](const std::vector<RayOf<T>>& some,
-                                      const std::vector<std::size_t>& indices, std::uint32_t most) {
-                                    const auto skips = skips_of(rays.skip, indices);
-                                    return lists(some, skips, most, by);
-                                  });
-    filter_hits<T>(rays, hits, filter, by,
-                   [&](const std::vector<RayOf<T>>& some, std::vector<AnyHit>& last, const Options& again) {
-                     trace({.records = some, .skip = again.skip}, last, again);
-                   });
-  }
-  void find_occluded(const RaySourceOf<T>& rays, std::span<std::uint8_t> occluded) const {
-    Options by = options;
-    if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
-    const CheckedCall checked(call, rays, occluded, by);
-    occluded_by_filter<AnyHit>(checked.rays, occluded, checked.options,
-                               [&](const HitRecords<AnyHit>& hits, const Options& from_the_first) {
-                                 find(checked.rays, hits, from_the_first);
-                               });
-  }
-};
-
 template <class AnyHit>
 AskedOf<std::remove_const_t<decltype(AnyHit::t)>> asked_by(const detail::Rejection<AnyHit>& rejection) {
   return {rejection.rejects, rejection.function};
@@ -122,6 +71,19 @@ struct KeptCall {
   }
   KeptCall(const KeptCall&) = delete;
   KeptCall& operator=(const KeptCall&) = delete;
+};
+
+// The kernels of a tree that ask a caller about hits; null: none that may be called at once.
+template <class View, class T>
+struct KeptCalls {
+  const KeptRow<View, T>* row = nullptr;
+  const View* tree = nullptr;
+
+  explicit operator bool() const { return row != nullptr; }
+  HitOf<T> closest(const RayOf<T>& ray, const AskedOf<T>& asked) const {
+    return row->closest(*tree, ray, asked);
+  }
+  bool any(const RayOf<T>& ray, const AskedOf<T>& asked) const { return row->any(*tree, ray, asked); }
 };
 
 // The first hit behind options.after that is not rejected; closest(options) is the first one behind.

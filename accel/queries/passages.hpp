@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/quiet_floats.hpp"
 #include "../mesh/boundary.hpp"
 #include "lists.hpp"
 #include "next.hpp"
@@ -111,41 +110,5 @@ class PassageJudge {
 
   ListMaker<T> maker_;
 };
-
-// As Tree::closest_crossing(): the nearest hits of the tree, of which those that are no passages give way to the next
-// ones. `view` is the tree as lists take it.
-template <class T, class Tree, class View, class Options>
-void closest_passages(const Tree& tree, const View& view, const RaySourceOf<T>& given,
-                      const HitRecords<HitOf<T>>& hits, const Options& by) {
-  const CheckedCall call("closest_crossing", given, hits, by);
-  const RaySourceOf<T>& rays = call.rays;
-  const Options& options = call.options;
-  rays.arrays != nullptr ? tree.closest(*rays.arrays, hits, options)
-                         : tree.closest(rays.records, hits, options);
-  const PassageJudge<T> judge(view, options);
-  const auto turn_down = [&](std::span<const std::size_t> indices, std::span<const HitOf<T>> found,
-                             std::span<std::uint8_t> rejected) {
-    const auto skips = skips_of(rays.skip, indices);
-    for (std::size_t k = 0; k < indices.size(); ++k)
-      rejected[k] =
-          judge(rays[indices[k]], skips.empty() ? no_primitive : skips[k].primitive, found[k]) ? 0 : 1;
-  };
-  filter_hits<T>(
-      rays, hits, turn_down, options,
-      [&](const std::vector<RayOf<T>>& some, std::vector<HitOf<T>>& last, const Options& again) {
-        tree.closest(some, last, again);
-      },
-      [](const HitOf<T>& hit) { return may_touch_edge(hit); });
-}
-// As closest_crossing() of one ray, in which options of batches mean nothing.
-template <class T, class Options, class Tree>
-HitOf<T> closest_passage(const Tree& tree, const RayOf<T>& ray, Options options) {
-  HitOf<T> hit = tree.closest(ray, options);
-  const QuietFloats quiet;
-  if (!hit || !may_touch_edge(hit)) return hit;
-  options.active = nullptr, options.progress = nullptr;
-  tree.closest_crossing(RayRecords<RayOf<T>>(&ray, 1), HitRecords<HitOf<T>>(&hit, 1), options);
-  return hit;
-}
 
 }  // namespace raylanes

@@ -1,5 +1,8 @@
 #include "ray_lists.hpp"
 
+#include "answers/surface_answers.hpp"
+#include "traced_tree.hpp"
+
 namespace raylanes {
 namespace {
 
@@ -28,36 +31,11 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
   }
 }
 
-RayLists<Crossing> TriangleTree::crossings(RayView rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(traced(), source_of(rays, options), options);
-}
-RayLists<Crossing> TriangleTree::crossings(const RayArrays& rays, const ListOptions& options) const {
-  return crossings_of<Crossing, float>(traced(), source_of(rays, options), options);
-}
-void TriangleTree::count_crossings(RayView rays, std::span<CrossingCount> counts,
-                                   const ListOptions& options) const {
-  count_crossings_of<float>(traced(), source_of(rays, options), counts, options);
-}
-void TriangleTree::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
-                                   const ListOptions& options) const {
-  count_crossings_of<float>(traced(), source_of(rays, options), counts, options);
-}
-
-RayLists<Hit> TriangleTree::all_hits(RayView rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), source_of(rays, options), options);
-}
-RayLists<Hit> TriangleTree::all_hits(const RayArrays& rays, const ListOptions& options) const {
-  return hits_of<float>(traced(), source_of(rays, options), options);
-}
-
-std::size_t TriangleTree::all_hits(RayView rays, std::span<std::size_t> offsets, std::span<Hit> hits,
-                                   const ListOptions& options) const {
-  require_size("all_hits", "offsets", offsets.size(), "rays and an end", rays.count + 1);
-  require_apart("all_hits", "offsets", Extent(offsets), Extent(hits));
-  const RayLists<Hit> lists = all_hits(rays, options);
-  std::copy(lists.offsets.begin(), lists.offsets.end(), offsets.begin());
-  if (lists.items.size() <= hits.size()) std::copy(lists.items.begin(), lists.items.end(), hits.begin());
-  return lists.items.size();
-}
+template <>
+struct SurfaceDoor<TriangleTree> : SurfaceOfTree<float, TracedTree> {
+  explicit SurfaceDoor(const TriangleTree& tree) : SurfaceOfTree(TreeOf::traced(tree)) {}
+  static void require_passages(const TraceOptions& options) { require_exact(options); }
+};
+template class SurfaceQueries<TriangleTree>;
 
 }  // namespace raylanes

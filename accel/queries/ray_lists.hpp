@@ -74,13 +74,13 @@ RayLists<HitOf<T>> hits_of(const Tree& tree, const RaySourceOf<T>& rays, const L
                                       [](const HitOf<T>& hit) { return hit; });
 }
 
-// AnyCrossing is Crossing, or CrossingD for doubles.
-template <class AnyCrossing, class T, class Tree>
-RayLists<AnyCrossing> crossings_of(const Tree& tree, const RaySourceOf<T>& rays, const ListOptions& options) {
-  return lists_of<AnyCrossing, ListEntryOf<T>>("crossings", ListKind::crossings, tree, rays, options,
-                                               [](const ListEntryOf<T>& entry) {
-                                                 return AnyCrossing{entry.t, entry.primitive, entry.side};
-                                               });
+template <class T, class Tree>
+RayLists<CrossingOf<T>> crossings_of(const Tree& tree, const RaySourceOf<T>& rays,
+                                     const ListOptions& options) {
+  return lists_of<CrossingOf<T>, ListEntryOf<T>>("crossings", ListKind::crossings, tree, rays, options,
+                                                 [](const ListEntryOf<T>& entry) {
+                                                   return CrossingOf<T>{entry.t, entry.primitive, entry.side};
+                                                 });
 }
 
 // Counts of rays from begin to end in a tree that has each triangle in one leaf, without lists.

@@ -3,6 +3,7 @@
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>
+#include <raylanes/scene.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/routing.hpp"
@@ -22,14 +23,18 @@ struct TracedTree {
 };
 struct BvhArrays;
 struct BvhDArrays;
+struct SceneParts;
+struct SphereTreeArrays;
 
-// The inside of a Bvh or a BvhD.
+// The inside of trees.
 struct TreeOf {
-  static TracedTree bvh(const Bvh& bvh);
+  static TracedTree traced(const TriangleTree& tree) { return tree.traced(); }
   static const BvhArrays* arrays(const Bvh& bvh) { return bvh.tree_.get(); }  // null: of an empty mesh
   static const BvhDArrays* arrays(const BvhD& bvh) { return bvh.tree_.get(); }
-  static const TreeView* ready(
-      const Bvh& bvh);  // what calls with one ray walk, until a refit; not of an empty mesh
+  static const SphereTreeArrays* arrays(const SphereTree& spheres) { return spheres.tree_.get(); }
+  static const SceneParts& parts(const Scene& scene) { return scene.parts(); }
+  // The tree that calls with one ray walk, until a refit; null: of an empty mesh.
+  static const TreeView* ready(const TriangleTree& tree) { return tree.ready_; }
   static Bvh copy(const Bvh& bvh);
   // As strike_triangles() in layout/refit.hpp.
   static void strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept;
@@ -47,15 +52,31 @@ const CallRow& default_row();
 const CallRow* usual_row(const TraceOptions& options);
 // The row for one ray at a time that sets facing and skip besides, of so many rays, if at all; null if there is none.
 const ChosenCallRow* chosen_row(const TraceOptions& options, std::size_t rays = 1);
+// One of these for one ray at a time, of so many rays; false if options ask for more.
+struct RowsOfCalls {
+  const CallRow* usual = nullptr;
+  const ChosenCallRow* chosen = nullptr;
+
+  RowsOfCalls() = default;
+  RowsOfCalls(const TraceOptions& options, std::size_t rays)
+      : usual(usual_row(options)), chosen(usual == nullptr ? chosen_row(options, rays) : nullptr) {}
+  explicit operator bool() const { return usual != nullptr || chosen != nullptr; }
+  // skipped() is the primitive that is not there for the ray.
+  template <class Skipped>
+  Hit closest(const TreeView& tree, const Ray& ray, Facing facing, const Skipped& skipped) const {
+    return usual != nullptr ? usual->closest(tree, ray) : chosen->closest(tree, ray, facing, skipped());
+  }
+  template <class Skipped>
+  bool any(const TreeView& tree, const Ray& ray, Facing facing, const Skipped& skipped) const {
+    return usual != nullptr ? usual->any(tree, ray) : chosen->any(tree, ray, facing, skipped());
+  }
+};
 // Whether a call whose caller rejects hits sets no more than facing, skip, after, grade and path.
 bool is_usual_kept(const TraceOptions& options, std::size_t rays = 1);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.
 Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options);
 
-// Finds hits as TriangleTree::closest() does.
-void trace_hits(const TracedTree& tree, const RaySource& rays, const HitView& hits,
-                const TraceOptions& options);
 // Throws std::invalid_argument for another test than exact.
 void require_exact(const TraceOptions& options);
 // Finds the hits behind options.after, as TraceOptions says; there are as many hits as rays.

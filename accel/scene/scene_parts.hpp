@@ -124,16 +124,15 @@ struct SceneQuery : GeometryQuery {
   PrimitiveView skip;  // of the caller's batch
 };
 // Throws as Scene::closest().
-SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options, std::uint32_t mask);
+SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options);
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
 // The same for a batch that has the answers of all instances but those that no kernel walks.
 void trace_others(const SceneQuery& query, const SceneBatch& batch);
-// Finds hits as Scene::closest() does, once views and options are found good.
-void trace_hits(const SceneParts& scene, const RaySource& rays, const SceneHitView& hits,
-                const TraceOptions& options, std::uint32_t mask);
-// The same behind the hits of options.after, by a checked query.
+// Finds the hits behind options.after, by a checked query.
 void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
                 const TraceOptions& options);
+// Throws std::invalid_argument for another test than exact.
+void require_exact_in_scene(const TraceOptions& options);
 // Throws std::invalid_argument if options.after is not of so many hits in scenes, or another test is asked for.
 void require_after_in_scene(const TraceOptions& options, std::size_t rays);
 SceneHit last_hit(const AfterView& after, std::size_t i);

@@ -2,7 +2,8 @@
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"
-#include "../queries/next.hpp"
+#include "../queries/answers/ray_answers.hpp"
+#include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -112,25 +113,6 @@ void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, 
   const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
   trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
 }
-void trace_hits(const SphereTreeArrays* tree, const RaySource& rays, const HitView& hits,
-                const VisitOptions& options) {
-  visit_hits("sphere tree", rays, hits, options, [&](const KernelTable& kernels, const GeometryBatch& batch) {
-    trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
-  });
-}
-void trace_occluded(const SphereTreeArrays* tree, const RaySource& rays, std::span<std::uint8_t> occluded,
-                    const VisitOptions& options) {
-  visit_occluded("sphere tree", rays, occluded, options,
-                 [&](const KernelTable& kernels, const GeometryBatch& batch) {
-                   trace_spheres(tree != nullptr ? *tree : no_spheres, kernels, batch);
-                 });
-}
-auto filtered(const SphereTreeArrays* tree, const HitFilter& filter, const VisitOptions& options) {
-  const auto trace = [tree](const RaySource& rays, const HitView& hits, const VisitOptions& by) {
-    trace_hits(tree, rays, hits, by);
-  };
-  return FilteredCall<float, HitFilter, VisitOptions, decltype(trace)>{"sphere tree", filter, options, trace};
-}
 
 struct SphereGeometry : Geometry {
   explicit SphereGeometry(std::shared_ptr<const SphereTreeArrays> tree) : kept(std::move(tree)) {}
@@ -191,74 +173,55 @@ SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
 SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options)
     : tree_(std::make_unique<SphereTreeArrays>(leaves_of(spheres, options))) {}
 
-Hit SphereTree::closest(const Ray& ray, const VisitOptions& options) const {
-  Hit hit;
-  closest(RayView(&ray, 1), HitView(&hit, 1), for_one_ray(options));
-  return hit;
-}
-bool SphereTree::occluded(const Ray& ray, const VisitOptions& options) const {
-  std::uint8_t is_occluded = 0;
-  occluded(RayView(&ray, 1), std::span(&is_occluded, 1), for_one_ray(options));
-  return is_occluded != 0;
-}
-void SphereTree::closest(RayView rays, HitView hits, const VisitOptions& options) const {
-  trace_hits(tree_.get(), source_of(rays, options), hits, options);
-}
-void SphereTree::closest(const RayArrays& rays, HitView hits, const VisitOptions& options) const {
-  trace_hits(tree_.get(), source_of(rays, options), hits, options);
-}
-void SphereTree::occluded(RayView rays, std::span<std::uint8_t> occluded, const VisitOptions& options) const {
-  trace_occluded(tree_.get(), source_of(rays, options), occluded, options);
-}
-void SphereTree::occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                          const VisitOptions& options) const {
-  trace_occluded(tree_.get(), source_of(rays, options), occluded, options);
-}
-void SphereTree::occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                               const SegmentEnds& ends, const VisitOptions& options) const {
-  trace_occluded(tree_.get(), source_of(Segments{from, points, ends}, options), occluded, options);
-}
-void SphereTree::occluded_towards(const Float3& direction, VertexView points,
-                                  std::span<std::uint8_t> occluded, const VisitOptions& options) const {
-  trace_occluded(tree_.get(), source_of(Segments{direction, points, {}, true}, options), occluded, options);
-}
+template <>
+class RayDoor<SphereTree> {
+ public:
+  static constexpr const char* name = "sphere tree";
 
-Hit SphereTree::closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
-                             const VisitOptions& options) const {
-  return first_kept(rejection, options, [&](const VisitOptions& next) { return closest(ray, next); });
-}
-bool SphereTree::any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
-                          const VisitOptions& options) const {
-  VisitOptions from_the_first = options;
-  from_the_first.after = {};  // of closest() only
-  return static_cast<bool>(closest_kept(ray, rejection, from_the_first));
-}
-void SphereTree::filtered_closest(RayView rays, HitView hits, const HitFilter& filter,
-                                  const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).closest(rays, hits);
-}
-void SphereTree::filtered_closest(const RayArrays& rays, HitView hits, const HitFilter& filter,
-                                  const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).closest(rays, hits);
-}
-void SphereTree::filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                   const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).occluded(rays, occluded);
-}
-void SphereTree::filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                                   const HitFilter& filter, const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).occluded(rays, occluded);
-}
-void SphereTree::filtered_occluded_from(const Float3& from, VertexView points,
-                                        std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                        const SegmentEnds& ends, const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).occluded_from(from, points, occluded, ends);
-}
-void SphereTree::filtered_occluded_towards(const Float3& direction, VertexView points,
-                                           std::span<std::uint8_t> occluded, const HitFilter& filter,
-                                           const VisitOptions& options) const {
-  filtered(tree_.get(), filter, options).occluded_towards(direction, points, occluded);
-}
+  explicit RayDoor(const SphereTree& tree)
+      : tree_(tree), spheres_(TreeOf::arrays(tree) != nullptr ? *TreeOf::arrays(tree) : no_spheres) {}
+
+  Hit closest(const Ray& ray) const { return closest_by(ray, {}); }
+  bool any(const Ray& ray) const { return any_by(ray, {}); }
+  Hit closest_by(const Ray& ray, const VisitOptions& options) const {
+    Hit hit;
+    const VisitOptions by = for_one_ray(options);
+    trace(source_of(RayView(&ray, 1), by), HitView(&hit, 1), by);
+    return hit;
+  }
+  bool any_by(const Ray& ray, const VisitOptions& options) const {
+    std::uint8_t is_occluded = 0;
+    const VisitOptions by = for_one_ray(options);
+    trace(source_of(RayView(&ray, 1), by), std::span(&is_occluded, 1), by);
+    return is_occluded != 0;
+  }
+  void trace(const RaySource& rays, const HitView& hits, const VisitOptions& options) const {
+    visit_hits(name, rays, hits, options, [&](const KernelTable& kernels, const GeometryBatch& batch) {
+      trace_spheres(spheres_, kernels, batch);
+    });
+  }
+  void trace(const RaySource& rays, std::span<std::uint8_t> occluded, const VisitOptions& options) const {
+    visit_occluded(name, rays, occluded, options,
+                   [&](const KernelTable& kernels, const GeometryBatch& batch) {
+                     trace_spheres(spheres_, kernels, batch);
+                   });
+  }
+
+  static void require_order(const VisitOptions&) {}
+  static NoLists lists(const VisitOptions&) { return {}; }
+  Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                   const VisitOptions& options) const {
+    return first_kept(rejection, options, [&](const VisitOptions& next) { return tree_.closest(ray, next); });
+  }
+  bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const VisitOptions& options) const {
+    return static_cast<bool>(closest_kept(ray, rejection, options));
+  }
+
+ private:
+  const SphereTree& tree_;
+  const SphereTreeArrays& spheres_;
+};
+template class RayQueries<SphereTree>;
 
 Box SphereTree::bounds() const noexcept {
   return tree_ ? tree_->boxes.bounds : empty_box;

@@ -19,7 +19,7 @@ namespace {
 
 struct TriangleGeometry : Geometry {
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeOf::bvh(*triangles()).view;
+    const TreeView view = TreeOf::traced(*triangles()).view;
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
@@ -49,7 +49,7 @@ struct TreeGeometry : TriangleGeometry {
     return arrays != nullptr ? arrays->mesh_triangles : 0;
   }
   void put_corners(float* corners) const override {
-    const Leaves& leaves = TreeOf::bvh(*tree).leaves->corners;
+    const Leaves& leaves = TreeOf::traced(*tree).leaves->corners;
     for (const std::uint64_t place : leaves.places()) {
       const Triangle triangle = leaves.triangle(place);
       float* const to = corners + 9 * (place >> 32);

@@ -45,8 +45,12 @@ void visit_parts(const char* what, const RaySource& rays, const Sink& sink, cons
   constexpr bool finds_hits = std::is_same_v<typename Sink::Answer, Hit>;
   const bool looks_behind = finds_hits && options.after.first != nullptr;
   over_calls(
-      {options.threads, options.counters, most, 4096, 4, most, options.progress}, rays, sink,
-      [&](std::size_t n) { return looks_behind ? n * sizeof(Hit) : 0; },
+      {.threads = options.threads,
+       .counters = options.counters,
+       .max_call = most,
+       .max_part = most,
+       .progress = options.progress},
+      rays, sink, [&](std::size_t n) { return looks_behind ? n * sizeof(Hit) : 0; },
       [&](const RayCall<typename Sink::Answer>& call) {
         GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
         batch.numbers = call.indices, batch.skip = call.skip;

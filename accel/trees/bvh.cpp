@@ -8,12 +8,6 @@
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {
-TracedTree TreeOf::bvh(const Bvh& bvh) {
-  return bvh.traced();
-}
-const TreeView* TreeOf::ready(const Bvh& bvh) {
-  return &bvh.tree_->ready;
-}
 Bvh TreeOf::copy(const Bvh& bvh) {
   Bvh other;
   if (!bvh.tree_) return other;

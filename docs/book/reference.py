@@ -40,17 +40,37 @@ def shown_lines(header):
         is_detail = is_detail and line != '}  // namespace detail'
 
 
-def header_page(header):
+def body_of(header, anchor):
     """Comments at the beginning of a line as text, all between them as code; each line has an anchor."""
-    page, kind = [f'# <raylanes/{header.name}>', ''], None
+    page, kind = [], None
     for number, line in shown_lines(header):
         wanted = 'contract' if line.startswith('//') else 'declaration' if line.strip() else kind
         if wanted != kind:
             page += [*(['</code></pre>', ''] if kind else []), f'<pre class="{wanted}"><code>']
             kind = wanted
         shown = line.lstrip('/').removeprefix(' ') if kind == 'contract' else line
-        page.append(f'<a id="line-{number}"></a>' + html.escape(shown.strip('\n')))
-    return '\n'.join([*page, '</code></pre>', ''])
+        page.append(f'<a id="{anchor}-{number}"></a>' + html.escape(shown.strip('\n')))
+    return [*page, '</code></pre>', '']
+
+
+def headers_of_bases(header):
+    """The other headers that declare what the header's classes derive from, and what these derive from."""
+    heads = ' '.join(re.findall(r'^class \w+ : ([^{;]*)\{', header.read_text(encoding='utf-8'), re.MULTILINE))
+    found = []
+    for base in re.findall(r'public (\w+)', heads):
+        for other in headers():
+            text = other.read_text(encoding='utf-8')
+            if other != header and re.search(rf'^class {base}\b[^;{{]*{{', text, re.MULTILINE):
+                found += [f for f in [other, *headers_of_bases(other)] if f not in [header, *found]]
+    return found
+
+
+def header_page(header):
+    """The header, and behind it those of its bases: a class's page has all that it can do."""
+    page = [f'# <raylanes/{header.name}>', '', *body_of(header, 'line')]
+    for base in headers_of_bases(header):
+        page += [f'## Inherited, from <raylanes/{base.name}>', '', *body_of(base, base.stem)]
+    return '\n'.join(page)
 
 
 def names_of_headers():

@@ -20,6 +20,14 @@ namespace raylanes {
 
 struct Path;  // <raylanes/paths.hpp>
 
+namespace detail {
+
+// The types of a class with queries: Number, Hit and Options; Crossing, ClosestOptions, DistanceOptions for such calls.
+template <class Tree>
+struct QueryTypes;
+
+}  // namespace detail
+
 /// Options of all_hits(), crossings() and count_crossings().
 struct ListOptions {
   std::uint32_t max_count =
@@ -30,6 +38,7 @@ struct ListOptions {
   LaneBits active = nullptr;  ///< the active rays; the others have empty lists; null: all
   PrimitiveView skip =
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
+  std::uint32_t mask = ~0u;  ///< of instances of a scene, as in TraceOptions
   TraceCounters* counters =
       nullptr;  ///< as in TraceOptions; rays are traced individually then, sorting is not counted
   /// If not null, called between parts, as Progress says; if it throws, any counts may be written.
@@ -54,21 +63,31 @@ struct RayLists {
 };
 
 /// A crossing of a ray and a surface.
-struct Crossing {
-  float t;                  ///< the exact quotient, rounded once
+template <class T>
+struct CrossingOf {
+  T t;                      ///< the exact quotient, rounded once
   std::uint32_t primitive;  ///< the triangle
   std::int32_t
       side;  ///< 1: along the normal (v1 − v0) × (v2 − v0), out of a solid; −1: against it, into a solid
 
-  bool operator==(const Crossing&) const = default;
+  bool operator==(const CrossingOf&) const = default;
 };
+/// A crossing of a ray of floats.
+using Crossing = CrossingOf<float>;
+/// A crossing of a ray of doubles.
+using CrossingD = CrossingOf<double>;
 
 /// A function that rejects hits, a batch at a time: hits[k] is a hit of ray rays[k] of the call. Set rejected[k], which
 /// is 0, to 1 to trace the ray on behind this hit.
 /// The calling thread calls it with hits of many rays at a time, one of each. It sees the hits of a ray in order, each
 /// once, up to the one that it keeps. Exceptions pass through.
-using HitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const Hit> hits,
-                                     std::span<std::uint8_t> rejected)>;
+template <class AnyHit>
+using HitFilterOf = std::function<void(std::span<const std::size_t> rays, std::span<const AnyHit> hits,
+                                       std::span<std::uint8_t> rejected)>;
+/// A filter of hits of floats.
+using HitFilter = HitFilterOf<Hit>;
+/// A filter of hits of doubles.
+using HitFilterD = HitFilterOf<HitD>;
 
 /// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
 /// There must be a mask for each ray of the call and for each triangle of the mesh. The filter keeps both spans, so the
@@ -106,7 +125,7 @@ enum class InsideRule : std::uint8_t {
   /// Four or more of the six rays along the axes cross the surface an odd number of times: for meshes with holes, where
   /// the other rules depend on the direction of the ray. Takes up to six times as long.
   vote,
-  /// The generalised winding number is ½ or more, as TriangleTree::winding_numbers() defines it: for meshes with holes,
+  /// The generalised winding number is ½ or more, as PointQueries::winding_numbers() defines it: for meshes with holes,
   /// faces turned over, or triangles that have nothing in common. On closed meshes with normals that all point out it
   /// agrees with `nonzero`. Takes the tree's boundary, which the first call finds.
   winding

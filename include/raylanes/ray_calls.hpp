@@ -3,46 +3,24 @@
 
 #include <cstdint>
 
-#include <raylanes/traversal.hpp>
-#include <raylanes/types.hpp>
+#include <raylanes/numbers.hpp>
+#include <raylanes/queries.hpp>
 
 namespace raylanes {
 
-class BvhD;
-class TriangleTree;
-struct DoubleTreeView;
-struct TraceOptions;
-struct TraceOptionsD;
-struct TreeView;
-
 namespace detail {
 
-// The types of a tree's calls, and its kernels: by default options, and with sides and a primitive to skip.
+// The kernels of a tree's calls: by default options, and with sides and a primitive to skip.
 template <class Tree>
-struct TypesOfCalls;
-template <>
-struct TypesOfCalls<TriangleTree> {
-  using Ray = raylanes::Ray;
-  using Hit = raylanes::Hit;
-  using Options = TraceOptions;
-  using View = TreeView;
-};
-template <>
-struct TypesOfCalls<BvhD> {
-  using Ray = RayD;
-  using Hit = HitD;
-  using Options = TraceOptionsD;
-  using View = DoubleTreeView;
-};
-template <class Types>
 struct KernelsOfCalls {
-  const typename Types::View* view = nullptr;
-  typename Types::Hit (*closest)(const typename Types::View&, const typename Types::Ray&) = nullptr;
-  bool (*occluded)(const typename Types::View&, const typename Types::Ray&) = nullptr;
-  typename Types::Hit (*closest_chosen)(const typename Types::View&, const typename Types::Ray&, Facing,
-                                        std::uint32_t) = nullptr;
-  bool (*occluded_chosen)(const typename Types::View&, const typename Types::Ray&, Facing,
-                          std::uint32_t) = nullptr;
+  using View = typename QueryTypes<Tree>::View;
+  using Ray = RayOf<typename QueryTypes<Tree>::Number>;
+  using Hit = typename QueryTypes<Tree>::Hit;
+  const View* view = nullptr;
+  Hit (*closest)(const View&, const Ray&) = nullptr;
+  bool (*occluded)(const View&, const Ray&) = nullptr;
+  Hit (*closest_chosen)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
+  bool (*occluded_chosen)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
 };
 
 }  // namespace detail
@@ -60,12 +38,10 @@ struct KernelsOfCalls {
 /// - force_path() does not change it.
 template <class Tree>
 class RayCalls {
-  using Types = detail::TypesOfCalls<Tree>;
-
  public:
-  using Ray = typename Types::Ray;          ///< a ray of the tree's numbers
-  using Hit = typename Types::Hit;          ///< its hit
-  using Options = typename Types::Options;  ///< how rays are traced
+  using Ray = typename detail::KernelsOfCalls<Tree>::Ray;      ///< a ray of the tree's numbers
+  using Hit = typename detail::QueryTypes<Tree>::Hit;          ///< its hit
+  using Options = typename detail::QueryTypes<Tree>::Options;  ///< how rays are traced
 
   /// Returns the nearest hit of the ray, or a miss.
   Hit closest(const Ray& ray) const {
@@ -85,7 +61,7 @@ class RayCalls {
   RayCalls(const Tree& tree, const Options& options) : tree_(&tree), options_(options) {}
   std::uint32_t skipped() const { return options_.skip.first != nullptr ? options_.skip[0] : no_primitive; }
 
-  detail::KernelsOfCalls<Types> kernels_;
+  detail::KernelsOfCalls<Tree> kernels_;
   const Tree* tree_;
   Options options_;
 };

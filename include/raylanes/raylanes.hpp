@@ -12,11 +12,13 @@
 #include <raylanes/mesh.hpp>
 #include <raylanes/numbers.hpp>
 #include <raylanes/paths.hpp>
+#include <raylanes/point_queries.hpp>
 #include <raylanes/points.hpp>
 #include <raylanes/prepared_ray.hpp>
 #include <raylanes/progress.hpp>
 #include <raylanes/queries.hpp>
 #include <raylanes/ray_calls.hpp>
+#include <raylanes/ray_queries.hpp>
 #include <raylanes/rays.hpp>
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>

@@ -5,7 +5,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <span>
@@ -30,9 +29,8 @@ template <class Hits>
 concept HitsOfTrees = std::convertible_to<Hits, HitView> && !std::convertible_to<Hits, SceneHitView>;
 }  // namespace detail
 
-/// A function that rejects hits in scenes, as HitFilter does in trees.
-using SceneHitFilter = std::function<void(std::span<const std::size_t> rays, std::span<const SceneHit> hits,
-                                          std::span<std::uint8_t> rejected)>;
+/// A filter of hits in scenes.
+using SceneHitFilter = HitFilterOf<SceneHit>;
 
 /// How a scene is traced, as Scene::report() says.
 struct SceneReport {
@@ -44,7 +42,6 @@ struct SceneReport {
   std::size_t meshes_without_tree =
       0;  ///< geometries added as meshes that needed no tree of their own so far
 };
-struct SceneStretch;
 
 /// A crossing of a ray and the surface of an instance. Its side is that in the space of the instance, so it tells entry
 /// from exit where the transform is a mirror, too.
@@ -53,6 +50,17 @@ struct SceneCrossing : Crossing {
 
   bool operator==(const SceneCrossing&) const = default;
 };
+
+class Scene;
+namespace detail {
+template <>
+struct QueryTypes<Scene> {
+  using Number = float;
+  using Hit = SceneHit;
+  using Options = TraceOptions;
+  using Crossing = SceneCrossing;
+};
+}  // namespace detail
 
 /// Geometries and instances that place them. Both are numbered from 0, in the order in which they are added.
 /// Call update() after any change, before the next query. Many threads may query one object at the same time, but not
@@ -93,7 +101,7 @@ struct SceneCrossing : Crossing {
 /// Common trees take the memory of a Bvh of their triangles, besides geometries. These need no trees of their own if
 /// they are added as vertices and triangles. The build takes 48 bytes a triangle more, and uses the builder of the
 /// largest geometry in the tree.
-class Scene {
+class Scene : public SurfaceQueries<Scene> {
  public:
   /// Makes an empty scene.
   Scene();
@@ -203,127 +211,10 @@ class Scene {
   // of your own primitives decides for itself. Counters include the top level. Each thread keeps its scratch memory
   // until it ends: 30 to 40 MB after batches of 131,072 rays, less after smaller ones.
 
-  /// Returns the nearest hit of the ray among instances whose mask has a bit in common with `mask`, or a miss.
-  /// Throws as TriangleTree::closest() does, and std::logic_error if the scene was changed without update().
-  SceneHit closest(const Ray& ray, const TraceOptions& options, std::uint32_t mask = ~0u) const;
-  /// Returns the nearest hit of the ray among all instances, by TriangleTest::exact on the active path.
-  SceneHit closest(const Ray& ray) const;
-  /// Returns whether the ray's segment hits such an instance. Throws as closest() does.
-  bool occluded(const Ray& ray, const TraceOptions& options, std::uint32_t mask = ~0u) const;
-  /// Returns whether the ray's segment hits any instance, by TriangleTest::exact on the active path.
-  bool occluded(const Ray& ray) const;
-  /// Finds the nearest hit of each ray: hits[i] belongs to ray i. Inactive rays leave their hit unchanged.
-  /// Options may be views of hits that results go to. Throws what closest(ray) throws, and std::invalid_argument,
-  /// before writing anything, if there are not as many hits as rays, or hits overlap rays. std::bad_alloc may leave
-  /// some hits written.
-  void closest(RayView rays, SceneHitView hits, const TraceOptions& options = {},
-               std::uint32_t mask = ~0u) const;
-  /// Finds the nearest hit of each ray, given as one array per number.
-  void closest(const RayArrays& rays, SceneHitView hits, const TraceOptions& options = {},
-               std::uint32_t mask = ~0u) const;
+  using RayQueries<Scene>::closest;
   /// Does not compile: hits in scenes are of the type SceneHit, as they name an instance.
   template <class Rays, detail::HitsOfTrees Hits>
   void closest(const Rays&, Hits&&, const TraceOptions& = {}) const = delete;  // a scene writes SceneHit
-  /// Returns the nearest hit at which the ray passes through the surface of an instance, or a miss, as
-  /// TriangleTree::closest_crossing() does in the space of each instance: sides sum over the triangles of one instance.
-  /// Throws what closest() throws, and std::invalid_argument for another test than exact, and if a geometry does not
-  /// consist of triangles.
-  SceneHit closest_crossing(const Ray& ray, const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
-  /// Finds the nearest hit at which each ray passes through the surface of an instance: hits[i] belongs to ray i.
-  void closest_crossing(RayView rays, SceneHitView hits, const TraceOptions& options = {},
-                        std::uint32_t mask = ~0u) const;
-  /// Sets occluded[i] to 1 if the segment of ray i hits such an instance, else to 0. Throws as closest() does.
-  void occluded(RayView rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {},
-                std::uint32_t mask = ~0u) const;
-  /// Sets occluded[i] for each ray, given as one array per number.
-  void occluded(const RayArrays& rays, std::span<std::uint8_t> occluded, const TraceOptions& options = {},
-                std::uint32_t mask = ~0u) const;
-  /// Sets occluded[i] to 1 if such an instance lies between `from` and points[i], else to 0: shadows of one light, as
-  /// TriangleTree::occluded_from(). Inactive points leave their result unchanged. Throws as occluded() does.
-  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                     const SegmentEnds& ends = {}, const TraceOptions& options = {},
-                     std::uint32_t mask = ~0u) const;
-  /// Sets occluded[i] to 1 if the ray from points[i] in that direction hits such an instance, else to 0: shadows of the
-  /// sun, as TriangleTree::occluded_towards(). Throws as occluded() does.
-  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
-                        const TraceOptions& options = {}, std::uint32_t mask = ~0u) const;
-
-  /// Finds the nearest hit of each ray that the filter does not reject; otherwise as TriangleTree::closest() with a
-  /// filter. Spheres and primitives of your own are filtered, too.
-  template <class Rays, std::convertible_to<SceneHitFilter> Filter>
-  void closest(const Rays& rays, SceneHitView hits, const Filter& filter, const TraceOptions& options = {},
-               std::uint32_t mask = ~0u) const {
-    filtered_closest(rays, hits, filter, options, mask);
-  }
-  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
-  template <class Rays, std::convertible_to<SceneHitFilter> Filter>
-  void occluded(const Rays& rays, std::span<std::uint8_t> occluded, const Filter& filter,
-                const TraceOptions& options = {}, std::uint32_t mask = ~0u) const {
-    filtered_occluded(rays, occluded, filter, options, mask);
-  }
-  /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
-  template <std::convertible_to<SceneHitFilter> Filter>
-  void occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                     const Filter& filter, const SegmentEnds& ends = {}, const TraceOptions& options = {},
-                     std::uint32_t mask = ~0u) const {
-    filtered_occluded_from(from, points, occluded, filter, ends, options, mask);
-  }
-  /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
-  template <std::convertible_to<SceneHitFilter> Filter>
-  void occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
-                        const Filter& filter, const TraceOptions& options = {},
-                        std::uint32_t mask = ~0u) const {
-    filtered_occluded_towards(direction, points, occluded, filter, options, mask);
-  }
-  /// Returns the nearest hit of the ray for which rejects(hit) is false.
-  /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
-  /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
-  /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
-  /// call closest() with options.after.
-  template <std::predicate<const SceneHit&> Rejects>
-  SceneHit closest(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
-                   std::uint32_t mask = ~0u) const {
-    return detail::with_rejection<SceneHit>(rejects, [&](const detail::Rejection<SceneHit>& rejection) {
-      return closest_kept(ray, rejection, options, mask);
-    });
-  }
-  /// Returns whether the ray's segment has a hit for which rejects(hit) is false. rejects() is asked as in closest(),
-  /// until it keeps a hit.
-  template <std::predicate<const SceneHit&> Rejects>
-  bool occluded(const Ray& ray, Rejects&& rejects, const TraceOptions& options = {},
-                std::uint32_t mask = ~0u) const {
-    return detail::with_rejection<SceneHit>(rejects, [&](const detail::Rejection<SceneHit>& rejection) {
-      return any_kept(ray, rejection, options, mask);
-    });
-  }
-
-  /// Returns every hit of each ray once, in the order of t, then of instances, then of primitives. The first one has
-  /// the bytes of closest(). options.skip takes hits in scenes.
-  /// One traversal a ray of a common tree, and one of each other instance that the ray comes to. In scenes that place
-  /// spheres or primitives of your own, each hit costs a search as by TraceOptions::after, which says which hits these
-  /// have. Needs memory for all hits of all rays. Throws what closest() throws.
-  RayLists<SceneHit> all_hits(RayView rays, const ListOptions& options = {}, std::uint32_t mask = ~0u) const;
-  /// Returns every hit of each ray, given as one array per number.
-  RayLists<SceneHit> all_hits(const RayArrays& rays, const ListOptions& options = {},
-                              std::uint32_t mask = ~0u) const;
-  /// Returns each crossing of a ray and the surface of an instance once, in the order of t, then of instances, then of
-  /// primitives. The ray crosses an instance as TriangleTree::crossings() says, in the space of that instance.
-  /// options.skip takes hits in scenes. Throws what closest() throws, and std::invalid_argument if the scene places
-  /// other primitives than triangles.
-  RayLists<SceneCrossing> crossings(RayView rays, const ListOptions& options = {},
-                                    std::uint32_t mask = ~0u) const;
-  /// Returns each crossing of the rays, given as one array per number.
-  RayLists<SceneCrossing> crossings(const RayArrays& rays, const ListOptions& options = {},
-                                    std::uint32_t mask = ~0u) const;
-  /// Counts the crossings of each ray over all instances, and sums up their sides; options.max_count is ignored.
-  /// Inactive rays leave their count unchanged. Makes lists. Throws as crossings() does, and std::invalid_argument if
-  /// counts.size() is not the number of rays.
-  void count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options = {},
-                       std::uint32_t mask = ~0u) const;
-  /// Counts the crossings of each ray, given as one array per number.
-  void count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
-                       const ListOptions& options = {}, std::uint32_t mask = ~0u) const;
-
   /// Computes the unit normal in the scene of each hit: normals[i] belongs to hits[i], hits in scenes or records that
   /// name an instance and a primitive. It is normal_in_scene() of <raylanes/surface.hpp> for the
   /// unit_normal() of the triangle; NaN for misses and hits that name no triangle. `threads` is as in TraceOptions.
@@ -349,32 +240,7 @@ class Scene {
   SceneReport report() const noexcept;
 
  private:
-  friend RayLists<SceneStretch> stretches(const Scene&, RayView, const ListOptions&, std::uint32_t);
-  // A ray, with any options.
-  [[gnu::cold, gnu::visibility("hidden")]] SceneHit closest_by_options(const Ray& ray,
-                                                                       const TraceOptions& options,
-                                                                       std::uint32_t mask) const;
-  [[gnu::cold, gnu::visibility("hidden")]] bool occluded_by_options(const Ray& ray,
-                                                                    const TraceOptions& options,
-                                                                    std::uint32_t mask) const;
-  SceneHit closest_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
-                        const TraceOptions& options, std::uint32_t mask) const;
-  bool any_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection, const TraceOptions& options,
-                std::uint32_t mask) const;
-  void filtered_closest(RayView rays, SceneHitView hits, const SceneHitFilter& filter,
-                        const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_closest(const RayArrays& rays, SceneHitView hits, const SceneHitFilter& filter,
-                        const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_occluded(RayView rays, std::span<std::uint8_t> occluded, const SceneHitFilter& filter,
-                         const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_occluded(const RayArrays& rays, std::span<std::uint8_t> occluded,
-                         const SceneHitFilter& filter, const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_occluded_from(const Float3& from, VertexView points, std::span<std::uint8_t> occluded,
-                              const SceneHitFilter& filter, const SegmentEnds& ends,
-                              const TraceOptions& options, std::uint32_t mask) const;
-  void filtered_occluded_towards(const Float3& direction, VertexView points, std::span<std::uint8_t> occluded,
-                                 const SceneHitFilter& filter, const TraceOptions& options,
-                                 std::uint32_t mask) const;
+  friend struct TreeOf;
   [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
   [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from

@@ -43,12 +43,11 @@ struct SceneStretch : Stretch {
 RayLists<Stretch> stretches(const TriangleTree& tree, RayView rays, const ListOptions& options = {});
 /// Returns the stretches of each ray of doubles within the solids of a tree, in order.
 RayLists<StretchD> stretches(const BvhD& tree, RayViewD rays, const ListOptions& options = {});
-/// Returns the stretches of each ray within the instances of a scene whose mask has a bit in common with `mask`, in the
+/// Returns the stretches of each ray within the instances of a scene that options.mask sees, in the
 /// order of entries, then of instances. Each instance has stretches of its own, as stretches() of its tree and the ray
 /// in its space: where instances overlap, so do their stretches. options.skip takes hits in scenes.
 /// Throws as stretches() of a tree, std::invalid_argument if a geometry does not consist of triangles, and
 /// std::logic_error if the scene was changed without update().
-RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options = {},
-                                 std::uint32_t mask = ~0u);
+RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options = {});
 
 }  // namespace raylanes

@@ -14,10 +14,11 @@ void closest_in_scene(const SharedScene& shared, const py::object& rays, const p
   const RaysOf<float> from(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
+  options.mask = mask;
   options.after = hits_behind<SceneHit>(after);
-  filtered_query<SceneHit>(shared, options, how[7], from.count, filter,
+  filtered_query<SceneHit>(shared, options, how[how_progress], from.count, filter,
                            [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
-                             scene.closest(from, to, filters..., heard, mask);
+                             scene.closest(from, to, filters..., heard);
                            });
 }
 
@@ -27,10 +28,10 @@ void crossing_in_scene(const SharedScene& shared, const py::object& rays, const 
   const RaysOf<float> from(rays);
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
+  options.mask = mask;
   options.after = hits_behind<SceneHit>(after);
-  query(shared, options, how[7], from.count, [&](const Scene& scene, const TraceOptions& heard) {
-    scene.closest_crossing(from, to, heard, mask);
-  });
+  query(shared, options, how[how_progress], from.count,
+        [&](const Scene& scene, const TraceOptions& heard) { scene.closest_crossing(from, to, heard); });
 }
 
 void occluded_in_scene(const SharedScene& shared, const py::object& rays, const py::array& occluded,
@@ -38,10 +39,11 @@ void occluded_in_scene(const SharedScene& shared, const py::object& rays, const 
                        const py::object& filter) {
   const RaysOf<float> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
-  const auto options = trace_options<float>(how, active, from.count);
-  filtered_query<SceneHit>(shared, options, how[7], from.count, filter,
+  auto options = trace_options<float>(how, active, from.count);
+  options.mask = mask;
+  filtered_query<SceneHit>(shared, options, how[how_progress], from.count, filter,
                            [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
-                             scene.occluded(from, to, filters..., heard, mask);
+                             scene.occluded(from, to, filters..., heard);
                            });
 }
 
@@ -50,14 +52,15 @@ void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::a
                       const py::object& active, std::uint32_t mask, const py::object& filter) {
   const auto to_points = vertices_of<float>(points);
   const auto to = span_of<std::uint8_t>(occluded);
-  const auto options = trace_options<float>(how, active, to_points.count);
+  auto options = trace_options<float>(how, active, to_points.count);
+  options.mask = mask;
   filtered_query<SceneHit>(
-      shared, options, how[7], to_points.count, filter,
+      shared, options, how[how_progress], to_points.count, filter,
       [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
         if (ends)
-          scene.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard, mask);
+          scene.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
         else
-          scene.occluded_towards(from, to_points, to, filters..., heard, mask);
+          scene.occluded_towards(from, to_points, to, filters..., heard);
       });
 }
 
@@ -126,10 +129,11 @@ void bind_spheres(py::module_& module) {
 void bind_scenes(py::module_& module) {
   bind_spheres(module);
   using Mask = std::uint32_t;
-  constexpr RayLists<SceneHit> (Scene::*hits)(RayView, const ListOptions&, Mask) const = &Scene::all_hits;
-  constexpr RayLists<SceneCrossing> (Scene::*passages)(RayView, const ListOptions&, Mask) const =
+  constexpr RayLists<SceneHit> (SurfaceQueries<Scene>::*hits)(RayView, const ListOptions&) const =
+      &Scene::all_hits;
+  constexpr RayLists<SceneCrossing> (SurfaceQueries<Scene>::*passages)(RayView, const ListOptions&) const =
       &Scene::crossings;
-  constexpr RayLists<SceneStretch> (*within)(const Scene&, RayView, const ListOptions&, Mask) = &stretches;
+  constexpr RayLists<SceneStretch> (*within)(const Scene&, RayView, const ListOptions&) = &stretches;
   auto scene = bind_shared<SharedScene>(module, "Scene");
   def_constructor(scene, empty_scene);
   def_constructor(scene, made_from<SharedScene>);

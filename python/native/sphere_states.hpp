@@ -89,7 +89,7 @@ inline void closest_spheres(const SharedSpheres& shared, const py::object& rays,
   const auto to = hits_of<float>(hits);
   auto options = visit_options(how, active, from.count);
   options.after = hits_behind<Hit>(after);
-  filtered_query<Hit>(shared, options, how[7], from.count, filter,
+  filtered_query<Hit>(shared, options, how[how_progress], from.count, filter,
                       [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
                         state.tree.closest(from, to, filters..., heard);
                       });
@@ -101,7 +101,7 @@ inline void occluded_by_spheres(const SharedSpheres& shared, const py::object& r
   const RaysOf<float> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = visit_options(how, active, from.count);
-  filtered_query<Hit>(shared, options, how[7], from.count, filter,
+  filtered_query<Hit>(shared, options, how[how_progress], from.count, filter,
                       [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
                         state.tree.occluded(from, to, filters..., heard);
                       });
@@ -114,7 +114,7 @@ inline void shadows_of_spheres(const SharedSpheres& shared, const Float3& from, 
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = visit_options(how, active, to_points.count);
   filtered_query<Hit>(
-      shared, options, how[7], to_points.count, filter,
+      shared, options, how[how_progress], to_points.count, filter,
       [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
         if (ends)
           state.tree.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);

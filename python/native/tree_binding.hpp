@@ -110,24 +110,38 @@ HitRecords<AnyHit> hits_behind(const py::object& after) {
   return {rows.first, rows.count, rows.stride};
 }
 
-// How rays are traced: (test, grade, mode, hint, path, threads, facing, progress, skip), as the Python text passes it
-// on; strings and arrays live as long as the tuple.
+// How rays are traced, as the Python text passes it on: a tuple that has each of these at its number. The module tells
+// their names, with which the text compares its own. Strings and arrays live as long as the tuple.
+enum How : std::size_t {
+  how_test,
+  how_grade,
+  how_mode,
+  how_hint,
+  how_path,
+  how_threads,
+  how_facing,
+  how_progress,
+  how_skip
+};
+inline constexpr std::array<const char*, 9> how_names{"test",    "grade",  "mode",     "hint", "path",
+                                                      "threads", "facing", "progress", "skip"};
+
 template <class T>
 typename CallTypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active,
                                                std::size_t rays) {
-  const auto text = [&](std::size_t i) {
-    const char* const utf8 = PyUnicode_AsUTF8(py::object(how[i]).ptr());
+  const auto text = [&](How what) {
+    const char* const utf8 = PyUnicode_AsUTF8(py::object(how[what]).ptr());
     return utf8 != nullptr ? utf8 : throw py::error_already_set();
   };
   TraceOptions options;
-  options.test = named<TriangleTest>("test", tree_test_names, text(0));
-  options.grade = named<Grade>("grade", grade_names, text(1));
-  options.mode = named<TraversalMode>("mode", traversal_mode_names, text(2));
-  options.hint = named<BatchHint>("hint", batch_hint_names, text(3));
-  options.path = path_named(py::object(how[4]).is_none() ? nullptr : text(4));
-  options.threads = usable_threads(how[5].cast<int>());
-  options.facing = named<Facing>("facing", facing_names, text(6));
-  options.active = bits_of(active, rays), options.skip = skips_of(how[8]);
+  options.test = named<TriangleTest>("test", tree_test_names, text(how_test));
+  options.grade = named<Grade>("grade", grade_names, text(how_grade));
+  options.mode = named<TraversalMode>("mode", traversal_mode_names, text(how_mode));
+  options.hint = named<BatchHint>("hint", batch_hint_names, text(how_hint));
+  options.path = path_named(py::object(how[how_path]).is_none() ? nullptr : text(how_path));
+  options.threads = usable_threads(how[how_threads].cast<int>());
+  options.facing = named<Facing>("facing", facing_names, text(how_facing));
+  options.active = bits_of(active, rays), options.skip = skips_of(how[how_skip]);
   typename CallTypesOf<T>::Options taken;
   take(taken, options);
   return taken;
@@ -150,7 +164,7 @@ void closest(const SharedTree<T>& shared, const py::object& rays, const py::arra
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
   options.after = hits_behind<HitOf<T>>(after);
-  filtered_query<HitOf<T>>(shared, options, how[7], from.count, filter,
+  filtered_query<HitOf<T>>(shared, options, how[how_progress], from.count, filter,
                            [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
                              tree.closest(from, to, filters..., heard);
                            });
@@ -163,7 +177,7 @@ void closest_crossing(const SharedTree<T>& shared, const py::object& rays, const
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
   options.after = hits_behind<HitOf<T>>(after);
-  query(shared, options, how[7], from.count,
+  query(shared, options, how[how_progress], from.count,
         [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_crossing(from, to, heard); });
 }
 
@@ -173,7 +187,7 @@ void occluded(const SharedTree<T>& shared, const py::object& rays, const py::arr
   const RaysOf<T> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, from.count);
-  filtered_query<HitOf<T>>(shared, options, how[7], from.count, filter,
+  filtered_query<HitOf<T>>(shared, options, how[how_progress], from.count, filter,
                            [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
                              tree.occluded(from, to, filters..., heard);
                            });
@@ -191,7 +205,7 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
   const auto to = span_of<std::uint8_t>(occluded);
   const auto options = trace_options<T>(how, active, to_points.count);
   filtered_query<HitOf<T>>(
-      shared, options, how[7], to_points.count, filter,
+      shared, options, how[how_progress], to_points.count, filter,
       [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
         if (ends)
           tree.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
@@ -218,8 +232,9 @@ py::tuple lists(const Shared& shared, const py::object& rays, std::uint32_t max_
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
+  ((options.mask = mask), ...);
   auto found = query(shared, options, progress, from.count, [&](const auto& tree, const auto& heard) {
-    return std::invoke(list, tree, from, heard, mask...);
+    return std::invoke(list, tree, from, heard);
   });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
@@ -232,8 +247,9 @@ void count_crossings(const Shared& shared, const py::object& rays, const py::arr
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
+  ((options.mask = mask), ...);
   query(shared, options, progress, from.count,
-        [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard, mask...); });
+        [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }
 
 template <class T>

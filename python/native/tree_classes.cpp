@@ -32,9 +32,9 @@ py::dict common_report(const Report& report, std::string_view builder) {
 template <class T>
 void bind_queries(py::module_& module, const char* name) {
   using Rays = RayRecords<RayOf<T>>;
-  using CrossingOf = typename CallTypesOf<T>::Crossing;
-  constexpr RayLists<HitOf<T>> (TreeOf<T>::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
-  constexpr RayLists<CrossingOf> (TreeOf<T>::*passages)(Rays, const ListOptions&) const =
+  using Surfaces = SurfaceQueries<TreeOf<T>>;
+  constexpr RayLists<HitOf<T>> (Surfaces::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
+  constexpr RayLists<CrossingOf<T>> (Surfaces::*passages)(Rays, const ListOptions&) const =
       &TreeOf<T>::crossings;
   constexpr RayLists<StretchRecord<T>> (*within)(const TreeOf<T>&, Rays, const ListOptions&) = &stretches;
   py::class_<SharedTree<T>>(module, name)
@@ -137,6 +137,8 @@ void bind_bvh(py::module_& module, const char* name) {
 }  // namespace
 
 void bind_trees(py::module_& module) {
+  module.attr("how_names") =
+      py::tuple(py::cast(std::vector<std::string>(how_names.begin(), how_names.end())));
   bind_queries<float>(module, "TriangleTree");
   bind_queries<double>(module, "TriangleTreeD");
   bind_bvh<Bvh>(module, "Bvh");

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from . import _native
 from ._answer import Answer, overlap
 from ._arrays import count_dtype, packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
 from ._scalars import count, function, real, threads_of, word
@@ -70,8 +71,12 @@ def _shadows_of(name, instead, numbers, light, points, ends, out, active, ask):
     return answer.finish()
 
 
+if _native.how_names != ("test", "grade", "mode", "hint", "path", "threads", "facing", "progress", "skip"):
+    raise ImportError(f"raylanes: the native module is another version's; it asks for {_native.how_names}")
+
+
 def how(test, grade, mode, hint, facing, threads, progress, skip):
-    """The options of a trace as the native module takes them."""
+    """The options of a trace as the native module takes them: what its how_names say, in this order."""
     return (word("test", test), word("grade", grade), word("mode", mode), word("hint", hint), chosen(),
             threads_of(threads), word("facing", facing), function("progress", progress), skip)
 

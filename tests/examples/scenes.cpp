@@ -22,7 +22,8 @@ TEST(ScenesByExample, instances_of_one_tree) {
     const SceneHit second = scene.closest(along_z(10.25f), {.path = path});
     EXPECT_TRUE(second.t == 2 && second.primitive == 3 && second.geometry == box && second.instance == there);
     EXPECT_FALSE(scene.closest(along_z(5), {.path = path})) << path->name << ": between them";
-    EXPECT_FALSE(scene.closest(along_z(10.25f), {.path = path}, 1)) << path->name << ": a mask without it";
+    EXPECT_FALSE(scene.closest(along_z(10.25f), {.path = path, .mask = 1}))
+        << path->name << ": a mask without it";
   }
 }
 

@@ -89,7 +89,7 @@ class AnyQueries {
     const auto crossings = tree.crossings(rays_, {.max_count = max_count_, .path = path});
     for (std::size_t i = 0; i < rays_.size(); ++i)
       if (!std::ranges::is_sorted(hits[i], {}, &HitOf<T>::t) ||
-          !std::ranges::is_sorted(crossings[i], {}, &oracle::CrossingOf<T>::t))
+          !std::ranges::is_sorted(crossings[i], {}, &CrossingOf<T>::t))
         fail("a list is not in order");
   }
 

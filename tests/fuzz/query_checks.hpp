@@ -16,7 +16,6 @@ bool is_finite(const Point& point) {
   return std::ranges::all_of(point, [](auto x) { return std::isfinite(x); });
 }
 
-using oracle::CrossingOf;
 template <class T>
 struct ExpectedLists {
   std::vector<std::vector<HitOf<T>>> hits;

@@ -52,15 +52,13 @@ auto skipping(const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, co
   };
 }
 // Asks a tree or a scene for hits, or for passages.
-template <class Tree, class AnyRay, class Skip, class... Mask>
-auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, Mask... mask) {
-  return skipping(rays, skip, [&tree, mask...](auto&&... call) { return tree.closest(call..., mask...); });
+template <class Tree, class AnyRay, class Skip>
+auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
+  return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest(call...); });
 }
-template <class Tree, class AnyRay, class Skip, class... Mask>
-auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip,
-                 Mask... mask) {
-  return skipping(rays, skip,
-                  [&tree, mask...](auto&&... call) { return tree.closest_crossing(call..., mask...); });
+template <class Tree, class AnyRay, class Skip>
+auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
+  return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest_crossing(call...); });
 }
 // all_of(ray) gives the expected answers.
 template <class AnyHit, class AnyRay, class Options, class Closest, class AllOf>

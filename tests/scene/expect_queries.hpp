@@ -67,25 +67,25 @@ inline void expect_queries(const Scene& scene, const std::vector<Ray>& rays, con
   const auto is_odd = [](const SceneHit& hit) { return hit.primitive % 2 != 0; };
   const std::vector<SceneHit> nearest = expected.first(&SceneHit::operator bool),
                               odd = expected.first(is_odd);
-  options.facing = expected.facing;
+  options.facing = expected.facing, options.mask = mask;
   expect_hits_on(options.path, scene, rays, nearest, mask, options.facing, expected.skip);
   if (!expected.skip.empty()) options.skip = expected.skip;
   std::vector<SceneHit> hits(rays.size()), some(rays.size());
-  scene.closest(rays, hits, reject_even<SceneHit>, options, mask);
+  scene.closest(rays, hits, reject_even<SceneHit>, options);
   EXPECT_TRUE(same_bytes(hits, odd));
   const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0xd6);
   TraceOptions masked = options;
   masked.active = active.data();
-  scene.closest(rays, some, masked, mask);
-  scene.closest_crossing(rays, hits, masked, mask);
+  scene.closest(rays, some, masked);
+  scene.closest_crossing(rays, hits, masked);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool is_active = (active[i / 8] >> i % 8 & 1) != 0;
     const auto& passages = expected.passages[i];
     EXPECT_TRUE(same_bytes(some[i], is_active ? nearest[i] : SceneHit())) << i;
     EXPECT_TRUE(same_bytes(hits[i], !is_active ? odd[i] : passages.empty() ? SceneHit() : passages[0])) << i;
   }
-  expect_peeled(rays, expected.hits, options, hits_of(scene, rays, expected.skip, mask));
-  expect_peeled(rays, expected.passages, options, passages_of(scene, rays, expected.skip, mask));
+  expect_peeled(rays, expected.hits, options, hits_of(scene, rays, expected.skip));
+  expect_peeled(rays, expected.passages, options, passages_of(scene, rays, expected.skip));
 }
 
 }  // namespace raylanes::testing

@@ -14,13 +14,16 @@ inline void expect_hits_on(const Path* path, const Scene& scene, const std::vect
                            Facing facing = Facing::any, const std::vector<SceneHit>& skip = {}) {
   for (const TraversalMode mode :
        {TraversalMode::single, TraversalMode::packet, TraversalMode::stream, TraversalMode::automatic}) {
-    TraceOptions options{
-        .mode = mode, .path = path, .threads = mode == TraversalMode::stream ? 2 : 1, .facing = facing};
+    TraceOptions options{.mode = mode,
+                         .path = path,
+                         .threads = mode == TraversalMode::stream ? 2 : 1,
+                         .facing = facing,
+                         .mask = mask};
     if (!skip.empty()) options.skip = skip;
     std::vector<SceneHit> hits(rays.size(), SceneHit{1, 2, 3, 4, 5, 6});
     std::vector<std::uint8_t> occluded(rays.size(), 7);
-    scene.closest(rays, hits, options, mask);
-    scene.occluded(rays, occluded, options, mask);
+    scene.closest(rays, hits, options);
+    scene.occluded(rays, occluded, options);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < rays.size() && wrong < 3; ++i) {
       const bool good = same_bytes(hits[i], expected[i]) && occluded[i] == (expected[i] ? 1 : 0);
@@ -31,12 +34,12 @@ inline void expect_hits_on(const Path* path, const Scene& scene, const std::vect
     }
   }
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    TraceOptions options{.path = path, .facing = facing};
+    TraceOptions options{.path = path, .facing = facing, .mask = mask};
     if (!skip.empty()) options.skip = skip[i];
-    const SceneHit hit = scene.closest(rays[i], options, mask);
+    const SceneHit hit = scene.closest(rays[i], options);
     ASSERT_TRUE(same_bytes(hit, expected[i]))
         << path->name << ", ray " << i << ": " << text(hit) << ", not " << text(expected[i]);
-    ASSERT_EQ(scene.occluded(rays[i], options, mask), static_cast<bool>(expected[i])) << path->name;
+    ASSERT_EQ(scene.occluded(rays[i], options), static_cast<bool>(expected[i])) << path->name;
   }
 }
 

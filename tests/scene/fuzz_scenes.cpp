@@ -33,21 +33,21 @@ std::uint32_t any_mask(Bytes& bytes) {
 }
 
 void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vector<SceneHit>& expected,
-                 const TraceOptions& options, std::uint32_t mask) {
+                 const TraceOptions& options) {
   static Fence fence(max_rays * sizeof(SceneHit)), byte_fence(max_rays);
   const std::span<SceneHit> hits(fence.last<SceneHit>(rays.size()), rays.size());
   const std::span<std::uint8_t> occluded(byte_fence.last<std::uint8_t>(rays.size()), rays.size());
-  scene.closest(rays, hits, options, mask);
-  scene.occluded(rays, occluded, options, mask);
+  scene.closest(rays, hits, options);
+  scene.occluded(rays, occluded, options);
   fence.expect_intact("hits"), byte_fence.expect_intact("occluded");
-  const TraceOptions of_one{.path = options.path, .facing = options.facing};
+  const TraceOptions of_one{.path = options.path, .facing = options.facing, .mask = options.mask};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool is_hit = static_cast<bool>(expected[i]);
     if (!same_bytes(hits[i], expected[i]) || occluded[i] != (is_hit ? 1 : 0))
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": " + text(hits[i]) + ", not " +
            text(expected[i]) + "; occluded " + std::to_string(occluded[i]));
-    const SceneHit alone = scene.closest(rays[i], of_one, mask);
-    if (!same_bytes(alone, expected[i]) || scene.occluded(rays[i], of_one, mask) != is_hit)
+    const SceneHit alone = scene.closest(rays[i], of_one);
+    if (!same_bytes(alone, expected[i]) || scene.occluded(rays[i], of_one) != is_hit)
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " alone: " + text(alone) +
            ", not " + text(expected[i]));
   }
@@ -65,11 +65,11 @@ std::vector<Ray> from_one_origin(Bytes& bytes, const std::vector<Ray>& rays) {
 
 // Behind the nearest hit there is the second one of all, on any path.
 void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::vector<SceneHit>& nearest,
-                 const TraceOptions& options, std::uint32_t mask) {
+                 const TraceOptions& options) {
   std::vector<SceneHit> hits = nearest;
-  scene.closest(rays, hits, behind(options, hits), mask);
+  scene.closest(rays, hits, behind(options, hits));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], mask, options.facing);
+    const std::vector<SceneHit> all = all_scene_hits(scene, rays[i], options.mask, options.facing);
     if (!same_bytes(hits[i], all.size() > 1 ? all[1] : SceneHit()))
       fail("next: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
   }
@@ -77,19 +77,19 @@ void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::ve
 
 // Skips are read as they were, wherever results are written over them.
 void expect_skips_apart(Bytes& bytes, const Scene& scene, const std::vector<Ray>& rays,
-                        const std::vector<SceneHit>& nearest, TraceOptions options, std::uint32_t mask) {
+                        const std::vector<SceneHit>& nearest, TraceOptions options) {
   const std::size_t n = rays.size(), at = bytes.below(3);
   std::vector<SceneHit> expected(n), room(n + 2);
   const SceneHitView to(room.data() + 1, n);
   options.skip = nearest;
-  scene.closest(rays, expected, options, mask);
+  scene.closest(rays, expected, options);
   std::ranges::copy(nearest, room.data() + at);
   options.skip = SceneHitView(room.data() + at, n);
   if (bytes.chance(128))
-    scene.closest(rays, to, options, mask);
+    scene.closest(rays, to, options);
   else
     scene.closest(
-        rays, to, [](auto, auto, auto) {}, options, mask);
+        rays, to, [](auto, auto, auto) {}, options);
   if (!same_bytes(std::span<SceneHit>(room).subspan(1, n), std::span<SceneHit>(expected)))
     fail(std::string("skips among the results on ") + options.path->name);
   std::vector<Float3> normals(n);
@@ -98,27 +98,27 @@ void expect_skips_apart(Bytes& bytes, const Scene& scene, const std::vector<Ray>
 }
 
 // The first passage of a scene is that of one of its instances, by their own trees.
-void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
-                     std::uint32_t mask) {
+void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options) {
   std::vector<SceneHit> hits(rays.size());
-  scene.closest_crossing(rays, hits, options, mask);
+  scene.closest_crossing(rays, hits, options);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const SceneHit expected = expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
-      return scene.tree(geometry)->closest_crossing(ray,
-                                                    {.path = &paths().front(), .facing = options.facing});
-    });
+    const SceneHit expected =
+        expected_hit(scene, rays[i], options.mask, [&](std::uint32_t geometry, const Ray& ray) {
+          return scene.tree(geometry)->closest_crossing(ray,
+                                                        {.path = &paths().front(), .facing = options.facing});
+        });
     if (!same_bytes(hits[i], expected))
       fail("passage: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
   }
 }
 
 // A scene has the stretches of its instances, by their own trees.
-void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
-                      std::uint32_t mask) {
-  const auto lists = stretches(scene, rays, {.path = options.path, .threads = options.threads}, mask);
+void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options) {
+  const auto lists =
+      stretches(scene, rays, {.path = options.path, .threads = options.threads, .mask = options.mask});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     std::vector<Stretch> expected;
-    expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
+    expected_hit(scene, rays[i], options.mask, [&](std::uint32_t geometry, const Ray& ray) {
       const auto of_instance = stretches(*scene.tree(geometry), std::vector{ray}, {.path = &paths().front()});
       expected.insert(expected.end(), of_instance.items.begin(), of_instance.items.end());
       return Hit();
@@ -130,13 +130,13 @@ void expect_stretches(const Scene& scene, const std::vector<Ray>& rays, const Tr
 }
 
 // A scene has the hits of its instances.
-void expect_lists(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options,
-                  std::uint32_t mask) {
+void expect_lists(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options) {
   const auto lists = scene.all_hits(
-      rays, {.facing = options.facing, .path = options.path, .threads = options.threads}, mask);
+      rays,
+      {.facing = options.facing, .path = options.path, .threads = options.threads, .mask = options.mask});
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (!same_bytes(lists[i],
-                    std::span<const SceneHit>(all_scene_hits(scene, rays[i], mask, options.facing))))
+                    std::span<const SceneHit>(all_scene_hits(scene, rays[i], options.mask, options.facing))))
       fail("all hits: ray " + std::to_string(i) + " on " + options.path->name);
 }
 
@@ -168,8 +168,7 @@ Scene copied(Scene& scene, const Mesh& mesh) {
 }
 
 // Spheres and primitives of the caller's, which hit nothing, beside the triangles of a scene.
-void expect_others(Bytes& bytes, Scene scene, const std::vector<Ray>& rays, const TraceOptions& options,
-                   std::uint32_t mask) {
+void expect_others(Bytes& bytes, Scene scene, const std::vector<Ray>& rays, const TraceOptions& options) {
   Coordinates coordinates(bytes);
   const auto nothing = [](std::uint32_t, const Ray&, Hit&) { return false; };
   std::vector<Sphere> spheres(bytes.below(20));
@@ -183,12 +182,12 @@ void expect_others(Bytes& bytes, Scene scene, const std::vector<Ray>& rays, cons
   scene.update();
   std::vector<SceneHit> expected;
   for (const Ray& ray : rays)
-    expected.push_back(expected_hit(scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped) {
+    expected.push_back(expected_hit(scene, ray, options.mask, [&](std::uint32_t geometry, const Ray& mapped) {
       return geometry == own     ? Hit()
              : geometry == balls ? tree.closest(mapped, {.path = &paths().front()})
                                  : scene.tree(geometry)->closest(mapped, {.path = &paths().front()});
     }));
-  expect_same(scene, rays, expected, options, mask);
+  expect_same(scene, rays, expected, options);
 }
 
 // Makes instances leave the common tree and join it. Masks may change at last, without an update.
@@ -242,24 +241,26 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
                              .threads = bytes.chance(32) ? 2 : 1,
                              .facing = bytes.chance(64)   ? Facing::front
                                        : bytes.chance(64) ? Facing::back
-                                                          : Facing::any};
-  const std::uint32_t mask = bytes.byte();
+                                                          : Facing::any,
+                             .mask = bytes.byte()};
   std::vector<Ray> rays;
   std::vector<SceneHit> expected;
   const std::size_t n = bytes.below(max_rays + 1);
   for (std::size_t i = 0; i < n; ++i) {
     rays.push_back(any_ray(bytes, coordinates, meshes[i % 2]));
-    expected.push_back(expected_hit(scene, rays[i], mask, [&](std::uint32_t geometry, const Ray& ray) {
-      return scene.tree(geometry)->closest(ray, {.path = &paths().front(), .facing = options.facing});
-    }));
+    expected.push_back(
+        expected_hit(scene, rays[i], options.mask, [&](std::uint32_t geometry, const Ray& ray) {
+          return scene.tree(geometry)->closest(ray, {.path = &paths().front(), .facing = options.facing});
+        }));
   }
-  expect_same(scene, rays, expected, options, mask);
-  if (bytes.chance(64)) expect_next(scene, rays, expected, options, mask);
-  if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options, mask);
-  if (bytes.chance(64)) expect_passages(scene, rays, options, mask);
-  if (bytes.chance(32)) expect_lists(scene, rays, options, mask);
-  if (bytes.chance(16)) expect_stretches(scene, rays, options, mask);
-  if (bytes.chance(64)) expect_others(bytes, scene, rays, {.mode = options.mode, .path = options.path}, mask);
+  expect_same(scene, rays, expected, options);
+  if (bytes.chance(64)) expect_next(scene, rays, expected, options);
+  if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options);
+  if (bytes.chance(64)) expect_passages(scene, rays, options);
+  if (bytes.chance(32)) expect_lists(scene, rays, options);
+  if (bytes.chance(16)) expect_stretches(scene, rays, options);
+  if (bytes.chance(64))
+    expect_others(bytes, scene, rays, {.mode = options.mode, .path = options.path, .mask = options.mask});
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);
   if (bytes.chance(64))
     expect_hits_of_boxes(bytes, meshes[0], rays, {.path = options.path, .threads = options.threads});

@@ -51,7 +51,7 @@ Scene scene_of_all_kinds() {
 
 std::vector<SceneHit> hits_of(const Scene& scene, const std::vector<Ray>& rays, std::uint32_t mask) {
   std::vector<SceneHit> hits(rays.size());
-  scene.closest(rays, hits, {}, mask);
+  scene.closest(rays, hits, {.mask = mask});
   return hits;
 }
 void expect_same_hits(const Scene& a, const Scene& b) {

@@ -25,7 +25,7 @@ TEST(Scene, follows_its_parts) {
   expect_all(parts, rays, 2);
   const SceneHit expected = parts.by_trees(rays[0], 2);
   const Scene other = std::move(scene);
-  EXPECT_TRUE(same_bytes(other.closest(rays[0], {}, 2), expected));
+  EXPECT_TRUE(same_bytes(other.closest(rays[0], {.mask = 2}), expected));
 }
 
 TEST(Scene, says_what_it_has) {

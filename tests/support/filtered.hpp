@@ -47,10 +47,10 @@ AnyHit first_kept(std::size_t ray, const std::vector<AnyHit>& all) {
   return kept != all.end() ? *kept : AnyHit();
 }
 
-// all_of(ray) are all hits of a ray in order; `rest` is what calls take behind their options.
-template <class AnyHit, class Tree, class AnyRay, class Options, class AllOf, class... Rest>
+// all_of(ray) are all hits of a ray in order.
+template <class AnyHit, class Tree, class AnyRay, class Options, class AllOf>
 void expect_filtered(const Tree& tree, const std::vector<AnyRay>& rays, const Options& options,
-                     const AllOf& all_of, const Rest&... rest) {
+                     const AllOf& all_of) {
   const auto filter = [](std::span<const std::size_t> some, std::span<const AnyHit> hits,
                          std::span<std::uint8_t> rejected) {
     for (std::size_t k = 0; k < some.size(); ++k) rejected[k] = keeps(some[k], hits[k]) ? 0 : 1;
@@ -59,10 +59,10 @@ void expect_filtered(const Tree& tree, const std::vector<AnyRay>& rays, const Op
   const RayColumns columns(rays);
   std::vector<AnyHit> records(n), arrays(n);
   std::vector<std::uint8_t> dark_records(n, 9), dark_arrays(n, 9);
-  tree.closest(rays, records, filter, options, rest...);
-  tree.closest(columns.view(), arrays, filter, options, rest...);
-  tree.occluded(rays, dark_records, filter, options, rest...);
-  tree.occluded(columns.view(), dark_arrays, filter, options, rest...);
+  tree.closest(rays, records, filter, options);
+  tree.closest(columns.view(), arrays, filter, options);
+  tree.occluded(rays, dark_records, filter, options);
+  tree.occluded(columns.view(), dark_arrays, filter, options);
   std::size_t turned_down = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::vector<AnyHit> all = all_of(rays[i]);
@@ -75,8 +75,8 @@ void expect_filtered(const Tree& tree, const std::vector<AnyRay>& rays, const Op
     };
     ASSERT_TRUE(same_bytes(records[i], wanted)) << "ray " << i;
     ASSERT_TRUE(same_bytes(arrays[i], wanted)) << "ray " << i;
-    ASSERT_TRUE(same_bytes(tree.closest(rays[i], rejects, options, rest...), wanted)) << "ray " << i;
-    ASSERT_EQ(tree.occluded(rays[i], rejects, options, rest...), static_cast<bool>(wanted)) << "ray " << i;
+    ASSERT_TRUE(same_bytes(tree.closest(rays[i], rejects, options), wanted)) << "ray " << i;
+    ASSERT_EQ(tree.occluded(rays[i], rejects, options), static_cast<bool>(wanted)) << "ray " << i;
     ASSERT_EQ(dark_records[i], wanted ? 1 : 0) << "ray " << i;
     ASSERT_EQ(dark_arrays[i], wanted ? 1 : 0) << "ray " << i;
   }
@@ -86,7 +86,7 @@ void expect_filtered(const Tree& tree, const std::vector<AnyRay>& rays, const Op
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < 3; ++k) points[i][k] = rays[i].origin[k] + 2 * rays[i].direction[k];
   std::vector<std::uint8_t> shadows(n, 9);
-  tree.occluded_from(rays[0].origin, points, shadows, filter, {}, options, rest...);
+  tree.occluded_from(rays[0].origin, points, shadows, filter, {}, options);
   for (std::size_t i = 0; i < n; ++i) {
     const AnyRay segment = segment_to<typename RayColumns<AnyRay>::Number>(rays[0].origin, points[i]);
     ASSERT_EQ(shadows[i], first_kept(i, all_of(segment)) ? 1 : 0) << "point " << i;

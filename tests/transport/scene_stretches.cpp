@@ -82,7 +82,7 @@ TEST_F(CubesInScene, have_the_stretches_of_their_trees) {
     scene.update();
     EXPECT_EQ(scene.report().common_instances, moving ? 0u : 4u);
     for (const std::uint32_t mask : {~0u, 2u, 1u}) {
-      const auto usual = stretches(scene, rays, {}, mask);
+      const auto usual = stretches(scene, rays, {.mask = mask});
       std::size_t most = 0;
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto wanted = expected(i, mask);
@@ -92,7 +92,7 @@ TEST_F(CubesInScene, have_the_stretches_of_their_trees) {
       EXPECT_GE(most, 5u);
       for (const Path* path : paths_with_own_queries())
         for (const int threads : {1, 2}) {
-          const auto again = stretches(scene, rays, {.path = path, .threads = threads}, mask);
+          const auto again = stretches(scene, rays, {.path = path, .threads = threads, .mask = mask});
           EXPECT_EQ(again.items, usual.items);
           EXPECT_EQ(again.offsets, usual.offsets);
         }

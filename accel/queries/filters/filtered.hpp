@@ -108,16 +108,4 @@ void replace_turned_down(const Source& rays, const View& hits, const Filter& fil
   }
 }
 
-// Sets occluded[i] of each active ray to whether it has a hit that a filter keeps: find(hits, options) finds these.
-template <class AnyHit, class Source, class Options, class Find>
-void occluded_by_filter(const Source& rays, std::span<std::uint8_t> occluded, const Options& options,
-                        const Find& find) {
-  std::vector<AnyHit> hits(rays.size());
-  Options from_the_first = options;
-  from_the_first.after = {};  // of closest() only
-  find(HitRecords<AnyHit>(hits), from_the_first);
-  for (std::size_t i = 0; i < hits.size(); ++i)
-    if (rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
-}
-
 }  // namespace raylanes

@@ -1,8 +1,9 @@
-// Lists of what rays meet in a scene: all hits, crossings, and how many.
+// Surfaces in scenes: how SurfaceQueries<Scene> answers.
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
-#include "../../../dispatch/quiet_floats.hpp"
+#include "../../queries/answers/surface_answers.hpp"
 #include "instance_lists.hpp"
 
 namespace raylanes {
@@ -14,16 +15,14 @@ struct SceneListCall {
   SceneQuery query;
   const CommonTree* common;  // not null: it has all that the mask sees
 
-  SceneListCall(const char* call, const SceneParts& scene, const RaySource& rays, const ListOptions& options,
-                std::uint32_t mask)
+  SceneListCall(const char* call, const SceneParts& scene, const RaySource& rays, const ListOptions& options)
       : checked(call, rays, options),
-        query(checked_query(scene,
-                            {.path = options.path,
-                             .threads = options.threads,
-                             .facing = options.facing,
-                             .skip = options.skip},
-                            mask)),
-        common(quick_tree(scene, mask)) {}
+        query(checked_query(scene, {.path = options.path,
+                                    .threads = options.threads,
+                                    .facing = options.facing,
+                                    .skip = options.skip,
+                                    .mask = options.mask})),
+        common(quick_tree(scene, options.mask)) {}
 };
 
 // Items in the order of rays, t, instances and primitives, as lists of at most max_count.
@@ -53,30 +52,31 @@ RayLists<SceneItem<Item>> lists_of_triangles(const SceneListCall& call) {
 }
 
 // The hits of a scene that has not triangles alone: a filter that turns down all of them sees them in order.
-template <class Rays>
-RayLists<SceneHit> hits_seen_by_filter(const Scene& scene, const Rays& rays, std::size_t count,
-                                       const ListOptions& options, std::uint32_t mask) {
+RayLists<SceneHit> hits_seen_by_filter(const Scene& scene, const RaySource& rays,
+                                       const ListOptions& options) {
+  const std::size_t count = rays.size();
   RayLists<SceneHit> lists;
   std::vector<FoundItem<Hit>> found;
   std::vector<std::uint32_t> counts(count);
-  const auto keep_last = [&](std::span<const std::size_t> some, std::span<const SceneHit> hits,
-                             std::span<std::uint8_t> rejected) {
+  const SceneHitFilter keep_last = [&](std::span<const std::size_t> some, std::span<const SceneHit> hits,
+                                       std::span<std::uint8_t> rejected) {
     for (std::size_t k = 0; k < some.size(); ++k) {
       found.push_back({hits[k], some[k]});
       rejected[k] = ++counts[some[k]] < options.max_count ? 1 : 0;
     }
   };
   std::vector<SceneHit> last(count);
+  const TraceOptions by{.path = options.path,
+                        .threads = options.threads,
+                        .facing = options.facing,
+                        .active = options.active,
+                        .skip = options.skip,
+                        .mask = options.mask,
+                        .counters = options.counters,
+                        .progress = options.progress};
   if (options.max_count > 0)
-    scene.closest(rays, last, keep_last,
-                  {.path = options.path,
-                   .threads = options.threads,
-                   .facing = options.facing,
-                   .active = options.active,
-                   .skip = options.skip,
-                   .counters = options.counters,
-                   .progress = options.progress},
-                  mask);
+    rays.arrays != nullptr ? scene.closest(*rays.arrays, last, keep_last, by)
+                           : scene.closest(rays.records, last, keep_last, by);
   set_lists(std::move(found), count, options.max_count, lists);
   return lists;
 }
@@ -90,17 +90,22 @@ bool has_triangles_alone(const SceneParts& scene) {
       scene.tops, [&](const TopLevel& top) { return std::ranges::all_of(top.tree.order, is_triangles); });
 }
 
-template <class Rays>
-RayLists<SceneHit> all_hits(const Scene& scene, const SceneParts& parts, const Rays& rays,
-                            const RaySource& source, const ListOptions& options, std::uint32_t mask) {
-  const SceneListCall call("all_hits", parts, source, options, mask);
-  if (has_triangles_alone(parts)) return lists_of_triangles<Hit>(call);
-  return hits_seen_by_filter(scene, rays, source.size(), call.checked.options, mask);
+// Says of a hit that may touch an edge whether the ray passes through its instance there.
+bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
+                const SkippedPrimitive& skipped, const TraceOptions& options) {
+  const Instance& instance = parts.instances[hit.instance];
+  if (!instance.is_identity) {
+    const Ray given = ray;
+    kernels_of(checked_path(options.path)).queries.map_rays(&given, nullptr, 1, instance.inverse, &ray);
+  }
+  return judge(ray, skipped.instance == hit.instance ? skipped.primitive : no_primitive,
+               {hit.t, hit.u, hit.v, hit.primitive});
 }
 
-RayLists<SceneCrossing> crossings(const char* name, const SceneParts& scene, const RaySource& rays,
-                                  const ListOptions& options, std::uint32_t mask) {
-  const SceneListCall call(name, scene, rays, options, mask);
+// Crossings of triangles.
+RayLists<SceneCrossing> crossings_in(const char* name, const SceneParts& scene, const RaySource& rays,
+                                     const ListOptions& options) {
+  const SceneListCall call(name, scene, rays, options);
   if (!has_triangles_alone(scene))
     throw std::invalid_argument(std::string(name) +
                                 ": a scene has crossings of triangles alone, and this one places "
@@ -108,41 +113,45 @@ RayLists<SceneCrossing> crossings(const char* name, const SceneParts& scene, con
   return lists_of_triangles<Crossing>(call);
 }
 
-void count(const SceneParts& scene, const RaySource& given, std::span<CrossingCount> counts,
-           const ListOptions& options, std::uint32_t mask) {
-  CheckedCall call("count_crossings", given, counts, options);
-  call.options.max_count = ~0u;
-  const RayLists<SceneCrossing> lists = crossings("count_crossings", scene, call.rays, call.options, mask);
-  for (std::size_t i = 0; i < lists.size(); ++i) {
-    if (!call.rays.takes_part(i)) continue;
-    counts[i] = {};
-    for (const SceneCrossing& crossing : lists[i]) ++counts[i].crossings, counts[i].winding += crossing.side;
-  }
-}
-
 }  // namespace
 
-RayLists<SceneHit> Scene::all_hits(RayView rays, const ListOptions& options, std::uint32_t mask) const {
-  return raylanes::all_hits(*this, parts(), rays, source_of(rays, options), options, mask);
-}
-RayLists<SceneHit> Scene::all_hits(const RayArrays& rays, const ListOptions& options,
-                                   std::uint32_t mask) const {
-  return raylanes::all_hits(*this, parts(), rays, source_of(rays, options), options, mask);
-}
-RayLists<SceneCrossing> Scene::crossings(RayView rays, const ListOptions& options, std::uint32_t mask) const {
-  return raylanes::crossings("crossings", parts(), source_of(rays, options), options, mask);
-}
-RayLists<SceneCrossing> Scene::crossings(const RayArrays& rays, const ListOptions& options,
-                                         std::uint32_t mask) const {
-  return raylanes::crossings("crossings", parts(), source_of(rays, options), options, mask);
-}
-void Scene::count_crossings(RayView rays, std::span<CrossingCount> counts, const ListOptions& options,
-                            std::uint32_t mask) const {
-  count(parts(), source_of(rays, options), counts, options, mask);
-}
-void Scene::count_crossings(const RayArrays& rays, std::span<CrossingCount> counts,
-                            const ListOptions& options, std::uint32_t mask) const {
-  count(parts(), source_of(rays, options), counts, options, mask);
-}
+template <>
+struct SurfaceDoor<Scene> {
+  explicit SurfaceDoor(const Scene& of) : scene(of), parts(TreeOf::parts(of)) {}
+
+  void require_passages(const TraceOptions& options) const { require_triangles(scene, options); }
+  auto judge(const TraceOptions& options) const {
+    std::vector<std::optional<PassageJudge<float>>> judges(scene.geometry_count());
+    return [this, judges = std::move(judges), &options](const Ray& ray, const SkippedPrimitive& skipped,
+                                                        const SceneHit& hit) mutable {
+      auto& judge = judges[hit.geometry];
+      if (!judge) judge.emplace(TreeOf::traced(*scene.tree(hit.geometry)), options);
+      return is_passage(*judge, parts, ray, hit, skipped, options);
+    };
+  }
+  RayLists<SceneHit> hits(const RaySource& rays, const ListOptions& options) const {
+    const SceneListCall call("all_hits", parts, rays, options);
+    if (has_triangles_alone(parts)) return lists_of_triangles<Hit>(call);
+    return hits_seen_by_filter(scene, call.checked.rays, call.checked.options);
+  }
+  RayLists<SceneCrossing> crossings(const RaySource& rays, const ListOptions& options) const {
+    return crossings_in("crossings", parts, rays, options);
+  }
+  void count(const RaySource& given, std::span<CrossingCount> counts, const ListOptions& options) const {
+    CheckedCall call("count_crossings", given, counts, options);
+    call.options.max_count = ~0u;
+    const RayLists<SceneCrossing> lists = crossings_in("count_crossings", parts, call.rays, call.options);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      if (!call.rays.takes_part(i)) continue;
+      counts[i] = {};
+      for (const SceneCrossing& crossing : lists[i])
+        ++counts[i].crossings, counts[i].winding += crossing.side;
+    }
+  }
+
+  const Scene& scene;
+  const SceneParts& parts;
+};
+template class SurfaceQueries<Scene>;
 
 }  // namespace raylanes

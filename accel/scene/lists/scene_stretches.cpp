@@ -8,14 +8,14 @@
 
 namespace raylanes {
 
-RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options,
-                                 std::uint32_t mask) {
+RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options) {
   const QuietFloats quiet;
   require_rays_of_stretches<float>(rays, options);
   require_skip("stretches", options.skip, rays.count);
   require_triangles(scene, {});
-  const TraceOptions checked{.path = options.path, .threads = options.threads, .skip = options.skip};
-  const SceneQuery query = checked_query(scene.parts(), checked, mask);
+  const TraceOptions checked{
+      .path = options.path, .threads = options.threads, .skip = options.skip, .mask = options.mask};
+  const SceneQuery query = checked_query(TreeOf::parts(scene), checked);
   const std::vector<Ray> whole = rays_without_ends<float>(rays, options.active);
   auto crossings = InstanceLists<Crossing>(query, whole, all_crossings(options)).find();
   std::ranges::stable_sort(crossings, {}, [](const auto& c) { return std::tuple(c.ray, c.instance); });

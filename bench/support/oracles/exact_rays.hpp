@@ -15,8 +15,6 @@ struct DoubleMesh {
 };
 template <class T>
 using MeshOf = std::conditional_t<std::is_same_v<T, float>, Mesh, DoubleMesh>;
-template <class T>
-using CrossingOf = std::conditional_t<std::is_same_v<T, float>, Crossing, CrossingD>;
 template <class AnyRay>
 using NumberOf = std::remove_const_t<decltype(AnyRay::tmin)>;
 

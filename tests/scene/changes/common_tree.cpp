@@ -159,8 +159,8 @@ TEST(CommonTree, loses_what_changes_and_takes_in_what_is_new_by_quarters) {
   expect_report(scene, 39);
   scene.set_mask(8, 1);
   expect_report(scene, 38);
-  EXPECT_EQ(scene.closest(ray_at_cube(8), {}, 2).instance, no_part);
-  EXPECT_EQ(scene.closest(ray_at_cube(8), {}, 1).instance, 8u);
+  EXPECT_EQ(scene.closest(ray_at_cube(8), {.mask = 2}).instance, no_part);
+  EXPECT_EQ(scene.closest(ray_at_cube(8), {.mask = 1}).instance, 8u);
   scene.update();
   expect_report(scene, 38);
   EXPECT_EQ(scene.report().common_bytes, bytes) << "it was built again";
@@ -197,7 +197,7 @@ TEST(CommonTree, is_one_for_each_of_four_masks) {
   expect_report(scene, 54);  // the fifth mask has none
   for (std::uint32_t i = 0; i < 60; ++i)
     for (const std::uint32_t mask : {1u, 2u, 5u, 8u, 16u, 31u})
-      EXPECT_EQ(scene.closest(ray_at_cube(i), {}, mask).instance,
+      EXPECT_EQ(scene.closest(ray_at_cube(i), {.mask = mask}).instance,
                 (scene.mask_of(i) & mask) != 0 ? i : no_part);
   const std::size_t bytes = scene.report().common_bytes;
   for (std::uint32_t i : {0u, 1u, 2u}) scene.move(i, moved_by(0, 0, 1));
@@ -223,13 +223,13 @@ TEST(CommonTree, lets_instances_with_other_masks_out_at_once) {
     expect_report(scene, 99 - i);
   }
   EXPECT_EQ(scene.report().common_trees, 2u);
-  EXPECT_EQ(scene.closest(ray_at_cube(3), {}, 3).instance, no_part);
+  EXPECT_EQ(scene.closest(ray_at_cube(3), {.mask = 3}).instance, no_part);
   scene.set_mask(16, 4);
   EXPECT_EQ(scene.report().common_trees, 0u);
   scene.set_mask(17, 4);
   for (std::uint32_t i = 0; i < 100; ++i) {
-    EXPECT_EQ(scene.closest(ray_at_cube(i), {}, 4).instance, i < 18 ? i : no_part);
-    EXPECT_EQ(copy.closest(ray_at_cube(i), {}, 3).instance, i);
+    EXPECT_EQ(scene.closest(ray_at_cube(i), {.mask = 4}).instance, i < 18 ? i : no_part);
+    EXPECT_EQ(copy.closest(ray_at_cube(i), {.mask = 3}).instance, i);
   }
   scene.update();
   expect_report(scene, 82);
@@ -245,16 +245,16 @@ TEST(CommonTree, goes_with_its_last_instance) {
   scene.set_mask(0, 4), scene.set_mask(0, 8);
   EXPECT_EQ(scene.report().common_instances, 2u);
   for (const std::uint32_t mask : {1u, 4u, 8u}) {
-    EXPECT_EQ(scene.closest(ray_at_cube(0), {}, mask).instance, mask == 8 ? 0u : no_part);
-    EXPECT_EQ(copy.closest(ray_at_cube(0), {}, mask).instance, mask == 1 ? 0u : no_part);
+    EXPECT_EQ(scene.closest(ray_at_cube(0), {.mask = mask}).instance, mask == 8 ? 0u : no_part);
+    EXPECT_EQ(copy.closest(ray_at_cube(0), {.mask = mask}).instance, mask == 1 ? 0u : no_part);
   }
   scene.set_mask(0, 2), scene.update();
-  EXPECT_EQ(scene.closest(ray_at_cube(0), {}, 2).instance, 0u);
-  EXPECT_EQ(scene.closest(ray_at_cube(0), {}, 1).instance, no_part);
+  EXPECT_EQ(scene.closest(ray_at_cube(0), {.mask = 2}).instance, 0u);
+  EXPECT_EQ(scene.closest(ray_at_cube(0), {.mask = 1}).instance, no_part);
   Scene one = cubes(1);
   one.set_mask(0, 1);
   expect_report(one, 1, false);
-  EXPECT_EQ(one.closest(ray_at_cube(0), {}, 2).instance, no_part);
+  EXPECT_EQ(one.closest(ray_at_cube(0), {.mask = 2}).instance, no_part);
 }
 
 TEST(CommonTree, of_one_is_that_of_its_geometry) {

@@ -237,13 +237,12 @@ TEST(NextOfScenes, take_spheres_and_primitives_of_the_caller) {
         const auto all_of = [&](const Ray& ray) { return mixed.all(ray, mask); };
         if (instances > 2 || mask == ~0u)
           expect_peeled<SceneHit>(
-              rays, TraceOptions{.path = path, .threads = 2},
-              [&](const auto& from, auto&&... rest) { return mixed.scene.closest(from, rest..., mask); },
-              all_of);
+              rays, TraceOptions{.path = path, .threads = 2, .mask = mask},
+              [&](const auto& from, auto&&... rest) { return mixed.scene.closest(from, rest...); }, all_of);
         if (instances > 2)
-          expect_filtered<SceneHit>(mixed.scene, rays, TraceOptions{.path = path}, all_of, mask);
+          expect_filtered<SceneHit>(mixed.scene, rays, TraceOptions{.path = path, .mask = mask}, all_of);
         for (const std::uint32_t most : {~0u, 2u, 0u}) {
-          const auto lists = mixed.scene.all_hits(rays, {.max_count = most, .path = path}, mask);
+          const auto lists = mixed.scene.all_hits(rays, {.max_count = most, .path = path, .mask = mask});
           for (std::size_t i = 0; i < rays.size(); ++i) {
             std::vector<SceneHit> all = all_of(rays[i]);
             all.resize(std::min<std::size_t>(all.size(), most));

@@ -43,13 +43,14 @@ void expect_lists(const Scene& scene, const std::vector<Ray>& rays, const Path* 
                       .facing = call.facing,
                       .path = path,
                       .threads = call.threads,
-                      .active = active.data()};
+                      .active = active.data(),
+                      .mask = call.mask};
   if (!call.skip.empty()) options.skip = call.skip;
-  const auto hits = scene.all_hits(rays, options, call.mask);
-  const auto of_arrays = scene.all_hits(RayColumns(rays).view(), options, call.mask);
-  const auto crossings = scene.crossings(rays, options, call.mask);
+  const auto hits = scene.all_hits(rays, options);
+  const auto of_arrays = scene.all_hits(RayColumns(rays).view(), options);
+  const auto crossings = scene.crossings(rays, options);
   std::vector<CrossingCount> counts(n, {77, 77});
-  scene.count_crossings(rays, counts, options, call.mask);
+  scene.count_crossings(rays, counts, options);
   ASSERT_TRUE(hits.size() == n && crossings.size() == n);
   EXPECT_TRUE(same_bytes(hits.items, of_arrays.items));
   for (std::size_t i = 0; i < n; ++i) {

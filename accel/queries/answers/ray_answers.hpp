@@ -1,0 +1,215 @@
+// The text of RayQueries, for every class: a batch of few rays, or any batch, or one ray; with filters or without.
+// Each class has a RayDoor of its own, in the class's file.
+#pragma once
+
+#include <raylanes/ray_queries.hpp>
+
+#include "../../batch/few_rays.hpp"
+#include "../next.hpp"
+
+namespace raylanes {
+
+// How a class answers rays. It is made of the object, and has
+//   name                                     the word that begins messages
+//   closest(ray), any(ray)                   the answer by default options
+//   closest_by(ray, options), any_by         one ray with any options
+//   trace(rays, hits, options), trace(rays, occluded, options)  any batch
+//   require_order(options)                   throws if hits have no order by these options
+//   lists()                                  how filters get lists of hits; NoLists
+//   closest_kept(ray, rejection, options), any_kept             one ray whose caller rejects hits
+// and where it has kernels of calls with one ray
+//   kernels(options, rays)                   closest(ray, i) and any(ray, i) for so many rays one by one, of which each
+//                                            may skip a primitive; converts to false if options ask for more
+//   few_rays(rays, answers, count, options)  FewRays; false if the batch is better traced as one
+//   kept_at_once()                           KeptCalls by default options; may be missing
+template <class Tree>
+class RayDoor;
+
+template <class Door, class AnyRay, class Answer, class Options>
+bool answer_few(const Door& door, const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count,
+                const Options& options) {
+  if constexpr (requires { door.kernels(options, 1); }) {
+    const FewRays<AnyRay, Answer> few = door.few_rays(rays, answers, count, options);
+    if (!few) return false;
+    const auto kernels = door.kernels(options, rays.count);
+    if (!kernels) return false;
+    few.trace([&](const AnyRay& ray, std::size_t i) {
+      if constexpr (std::is_same_v<Answer, std::uint8_t>)
+        return kernels.any(ray, i);
+      else
+        return kernels.closest(ray, i);
+    });
+    return true;
+  }
+  return false;
+}
+
+template <class Tree>
+auto RayQueries<Tree>::closest(const Ray& ray) const -> Hit {
+  return RayDoor<Tree>(self()).closest(ray);
+}
+template <class Tree>
+auto RayQueries<Tree>::closest(const Ray& ray, const Options& options) const -> Hit {
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kernels(options, 1); })
+    if (const auto kernels = door.kernels(options, 1)) return kernels.closest(ray, 0);
+  return door.closest_by(ray, options);
+}
+template <class Tree>
+bool RayQueries<Tree>::occluded(const Ray& ray) const {
+  return RayDoor<Tree>(self()).any(ray);
+}
+template <class Tree>
+bool RayQueries<Tree>::occluded(const Ray& ray, const Options& options) const {
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kernels(options, 1); })
+    if (const auto kernels = door.kernels(options, 1)) return kernels.any(ray, 0);
+  return door.any_by(ray, options);
+}
+
+template <class Tree>
+void RayQueries<Tree>::closest(Rays rays, Hits hits, const Options& options) const {
+  const RayDoor<Tree> door(self());
+  if (answer_few(door, rays, HitSink<Hit>{hits}.in_place(), hits.count, options)) return;
+  door.trace(source_of(rays, options), hits, options);
+}
+template <class Tree>
+void RayQueries<Tree>::closest(const Columns& rays, Hits hits, const Options& options) const {
+  RayDoor<Tree>(self()).trace(source_of(rays, options), hits, options);
+}
+template <class Tree>
+void RayQueries<Tree>::occluded(Rays rays, Occluded occluded, const Options& options) const {
+  const RayDoor<Tree> door(self());
+  if (answer_few(door, rays, occluded.data(), occluded.size(), options)) return;
+  door.trace(source_of(rays, options), occluded, options);
+}
+template <class Tree>
+void RayQueries<Tree>::occluded(const Columns& rays, Occluded occluded, const Options& options) const {
+  RayDoor<Tree>(self()).trace(source_of(rays, options), occluded, options);
+}
+template <class Tree>
+void RayQueries<Tree>::occluded_from(const Point& from, Points points, Occluded occluded, const Ends& ends,
+                                     const Options& options) const {
+  const SegmentsOf<Number> segments{from, points, ends};
+  RayDoor<Tree>(self()).trace(source_of(segments, options), occluded, options);
+}
+template <class Tree>
+void RayQueries<Tree>::occluded_towards(const Point& direction, Points points, Occluded occluded,
+                                        const Options& options) const {
+  const SegmentsOf<Number> segments{direction, points, {}, true};
+  RayDoor<Tree>(self()).trace(source_of(segments, options), occluded, options);
+}
+
+template <class Tree>
+auto RayQueries<Tree>::closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                                    const Options* options) const -> Hit {
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kept_at_once(); })
+    if (options == nullptr)
+      if (const auto kept = door.kept_at_once()) return kept.closest(ray, asked_by(rejection));
+  return door.closest_kept(ray, rejection, options != nullptr ? *options : Options());
+}
+template <class Tree>
+bool RayQueries<Tree>::any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
+                                const Options* options) const {
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kept_at_once(); })
+    if (options == nullptr)
+      if (const auto kept = door.kept_at_once()) return kept.any(ray, asked_by(rejection));
+  Options by = options != nullptr ? *options : Options();
+  by.after = {};  // of closest() only
+  return door.any_kept(ray, rejection, by);
+}
+
+// A batch whose hits a filter turns down. Hits behind those turned down come from lists, where there are some.
+template <class Tree>
+class FilteredCall {
+  using Number = typename RayQueries<Tree>::Number;
+  using Hit = typename RayQueries<Tree>::Hit;
+  using Options = typename RayQueries<Tree>::Options;
+  using Source = RaySourceOf<Number>;
+
+ public:
+  FilteredCall(const RayDoor<Tree>& door, const HitFilterOf<Hit>& filter, const Options& options)
+      : door_(door), filter_(filter), options_(options) {}
+
+  void closest(const Source& rays, const HitRecords<Hit>& hits) const {
+    const CheckedCall checked(door_.name, rays, hits, options_);
+    find(checked.rays, hits, checked.options);
+  }
+  void occluded(const Source& rays, std::span<std::uint8_t> occluded) const {
+    Options by = options_;
+    if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
+    const CheckedCall checked(door_.name, rays, occluded, by);
+    by = checked.options, by.after = {};  // of closest() only
+    std::vector<Hit> hits(rays.size());
+    find(checked.rays, hits, by);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (checked.rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
+  }
+
+ private:
+  void find(const Source& rays, const HitRecords<Hit>& hits, const Options& by) const {
+    door_.require_order(by);
+    door_.trace(rays, hits, by);
+    const auto lists = door_.lists(by);
+    if constexpr (!std::is_same_v<decltype(lists), const NoLists>)
+      if (filter_ && lists)
+        return replace_from_lists(rays, hits, filter_, lists.have_streams,
+                                  [&](const std::vector<RayOf<Number>>& some,
+                                      const std::vector<std::size_t>& indices, std::uint32_t most) {
+                                    const auto skips = skips_of(rays.skip, indices);
+                                    return lists(some, skips, most, by);
+                                  });
+    filter_hits<Number>(
+        rays, hits, filter_, by,
+        [&](const std::vector<RayOf<Number>>& some, std::vector<Hit>& last, const Options& again) {
+          door_.trace({.records = some, .skip = again.skip}, last, again);
+        });
+  }
+
+  const RayDoor<Tree>& door_;
+  const HitFilterOf<Hit>& filter_;
+  const Options& options_;
+};
+
+template <class Tree>
+void RayQueries<Tree>::filtered_closest(Rays rays, Hits hits, const Filter& filter,
+                                        const Options& options) const {
+  const RayDoor<Tree> door(self());
+  FilteredCall<Tree>(door, filter, options).closest(source_of(rays, options), hits);
+}
+template <class Tree>
+void RayQueries<Tree>::filtered_closest(const Columns& rays, Hits hits, const Filter& filter,
+                                        const Options& options) const {
+  const RayDoor<Tree> door(self());
+  FilteredCall<Tree>(door, filter, options).closest(source_of(rays, options), hits);
+}
+template <class Tree>
+void RayQueries<Tree>::filtered_occluded(Rays rays, Occluded occluded, const Filter& filter,
+                                         const Options& options) const {
+  const RayDoor<Tree> door(self());
+  FilteredCall<Tree>(door, filter, options).occluded(source_of(rays, options), occluded);
+}
+template <class Tree>
+void RayQueries<Tree>::filtered_occluded(const Columns& rays, Occluded occluded, const Filter& filter,
+                                         const Options& options) const {
+  const RayDoor<Tree> door(self());
+  FilteredCall<Tree>(door, filter, options).occluded(source_of(rays, options), occluded);
+}
+template <class Tree>
+void RayQueries<Tree>::filtered_from(const Point& from, Points points, Occluded occluded,
+                                     const Filter& filter, const Ends& ends, const Options& options) const {
+  const RayDoor<Tree> door(self());
+  const SegmentsOf<Number> segments{from, points, ends};
+  FilteredCall<Tree>(door, filter, options).occluded(source_of(segments, options), occluded);
+}
+template <class Tree>
+void RayQueries<Tree>::filtered_towards(const Point& direction, Points points, Occluded occluded,
+                                        const Filter& filter, const Options& options) const {
+  const RayDoor<Tree> door(self());
+  const SegmentsOf<Number> segments{direction, points, {}, true};
+  FilteredCall<Tree>(door, filter, options).occluded(source_of(segments, options), occluded);
+}
+
+}  // namespace raylanes

@@ -1,0 +1,241 @@
+// Rays in scenes: how RayQueries<Scene> answers.
+#include <algorithm>
+#include <stdexcept>
+
+#include "../../../dispatch/quiet_floats.hpp"
+#include "../../../dispatch/table/kernel_table.hpp"
+#include "../../../dispatch/table/queries.hpp"
+#include "../../../dispatch/table/traversal.hpp"
+#include "../../queries/answers/ray_answers.hpp"
+#include "../../queries/traced_tree.hpp"
+#include "../reach.hpp"
+#include "kept_in_scene.hpp"
+
+namespace raylanes {
+
+SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options) {
+  const Traversal traversal = checked_traversal({TreeKind::bvh, nullptr, no_tree}, options);
+  if (options.skip.first != nullptr && options.skip.to_instance == 0)
+    throw std::invalid_argument(
+        "scene: skip takes hits in scenes, which name an instance besides the primitive");
+  if (options.facing != Facing::any)
+    for (const auto& geometry : scene.geometries) geometry->require(options);
+  if (!scene.is_current)
+    throw std::logic_error("scene: it was changed; update() comes before the next query");
+  return {{options.test, traversal.choice, kernels_of(checked_path(options.path))},
+          scene,
+          options.mask,
+          options.skip};
+}
+
+namespace {
+
+template <class Sink>
+void trace_all(const SceneQuery& query, const RaySource& rays, const Sink& sink, int threads) {
+  BatchPlan plan{threads, query.choice.counters};
+  plan.progress = query.choice.progress, plan.fixed_parts = query.choice.fixed_parts;
+  over_calls(
+      plan, rays, sink, [](std::size_t) { return std::size_t{0}; },
+      [&](const RayCall<typename Sink::Answer>& call) {
+        SceneBatch batch{call.rays, call.size, nullptr, nullptr, call.indices};
+        set_answers(batch, call.answers);
+        SceneQuery counted = query;
+        counted.choice.counters = call.counters;
+        trace_scene(counted, batch);
+      });
+}
+
+// Whether a call with one ray by the exact test may go by kernels through the instances that consist of triangles.
+bool is_walked(const SceneParts& scene) {
+  return scene.is_current && !scene.has_only_others() && !QuietFloats::are_wanted();
+}
+bool comes_to_others(const SceneParts& scene, const Ray& ray, float end) {
+  return scene.has_others() && std::ranges::any_of(scene.tops, [&](const TopLevel& top) {
+           return top.walked.entries == nullptr && may_reach(top.tree.view(), ray, end);
+         });
+}
+SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
+  const TraversalKernels& kernels = kernels_of(path).traversal;
+  SceneHit hit;
+  for (const auto& tree : scene.commons) {
+    if (!scene.sees(*tree, mask)) continue;
+    Ray rest = ray;
+    if (hit && tmax_behind(hit.t) < ray.tmax) rest.tmax = tmax_behind(hit.t);
+    const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, rest);
+    if (is_before(next, hit)) hit = next;
+  }
+  for (const TopLevel& top : scene.tops)
+    if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
+  if (comes_to_others(scene, ray, tmax_behind(hit.t)))
+    trace_others(checked_query(scene, {.path = &path, .mask = mask}), {&ray, 1, &hit, nullptr});
+  return hit;
+}
+bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
+                     std::uint32_t mask) {
+  for (const auto& tree : scene.commons)
+    if (scene.sees(*tree, mask) && row.any(*tree->view, ray)) return true;
+  for (const TopLevel& top : scene.tops)
+    if (top.walked.entries != nullptr && kernels_of(path).traversal.any_of_instances(top.walked, ray, mask))
+      return true;
+  std::uint8_t is_occluded = 0;
+  if (comes_to_others(scene, ray, std::numeric_limits<float>::infinity()))
+    trace_others(checked_query(scene, {.path = &path, .mask = mask}), {&ray, 1, nullptr, &is_occluded});
+  return is_occluded != 0;
+}
+
+// A scene's kernels of calls with one ray, by options: a tree has all that the mask sees, or they walk through
+// several.
+class KernelsOfScene {
+ public:
+  KernelsOfScene(const SceneParts& scene, const TraceOptions& options, std::size_t rays)
+      : scene_(scene), options_(options), tree_(quick_tree(scene, options.mask)) {
+    if (tree_ == nullptr) {
+      if (options.test != TriangleTest::exact || !is_walked(scene)) return;
+      if ((rows_.usual = usual_row(options)) != nullptr) path_ = &checked_path(options.path);
+      return;
+    }
+    rows_.usual = usual_row(options);
+    const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
+    if (rows_.usual == nullptr && !names_no_instance) rows_.chosen = chosen_row(options, rays);
+  }
+  explicit operator bool() const { return static_cast<bool>(rows_); }
+  SceneHit closest(const Ray& ray, std::size_t i) const {
+    if (tree_ == nullptr) return walked_closest(scene_, *path_, ray, options_.mask);
+    const Hit hit = rows_.closest(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
+    return tree_->numbers().owners.spread(hit);
+  }
+  bool any(const Ray& ray, std::size_t i) const {
+    if (tree_ == nullptr) return walked_occluded(scene_, *path_, *rows_.usual, ray, options_.mask);
+    return rows_.any(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
+  }
+
+ private:
+  std::uint32_t skipped(std::size_t i) const {
+    const PrimitiveView& skip = options_.skip;
+    return skip.first != nullptr ? tree_->numbers().of(skip.instance(i), skip[i]) : no_primitive;
+  }
+
+  const SceneParts& scene_;
+  const TraceOptions& options_;
+  const CommonTree* tree_;
+  RowsOfCalls rows_;
+  const Path* path_ = nullptr;
+};
+
+// Lists of hits where a common tree has all that the mask sees.
+struct ListsOfCommon {
+  static constexpr bool have_streams = true;
+  const CommonTree* tree;
+
+  explicit operator bool() const { return tree != nullptr; }
+  RayLists<SceneHit> operator()(const std::vector<Ray>& rays, std::span<const SkippedPrimitive> skips,
+                                std::uint32_t most, const TraceOptions& by) const {
+    return lists_in_common<Hit>(*tree, {.records = rays, .skip = skips}, options_of_lists(by, most));
+  }
+};
+
+}  // namespace
+
+const CommonTree* quick_tree(const SceneParts& scene, std::uint32_t mask) {
+  if (!scene.is_current || QuietFloats::are_wanted()) return nullptr;
+  if (scene.only != nullptr) [[likely]]
+    return (scene.only->mask & mask) != 0 ? scene.only : nullptr;
+  if (!scene.tops.empty()) return nullptr;
+  const CommonTree* only = nullptr;
+  for (const auto& tree : scene.commons) {
+    if (!scene.sees(*tree, mask)) continue;
+    if (only != nullptr) return nullptr;
+    only = tree.get();
+  }
+  return only;
+}
+
+template <>
+class RayDoor<Scene> {
+ public:
+  static constexpr const char* name = "scene";
+
+  explicit RayDoor(const Scene& scene) : scene_(scene), parts_(TreeOf::parts(scene)) {}
+
+  SceneHit closest(const Ray& ray) const {
+    if (const CommonTree* const tree = quick_tree(parts_, ~0u)) [[likely]]
+      return kernels_of(path_in_use()).traversal.closest_in_scene(*tree->view, tree->numbers().owners, ray);
+    return is_walked(parts_) ? walked_closest(parts_, path_in_use(), ray, ~0u) : closest_by(ray, {});
+  }
+  bool any(const Ray& ray) const {
+    if (const CommonTree* const tree = quick_tree(parts_, ~0u)) [[likely]]
+      return default_row().any(*tree->view, ray);
+    return is_walked(parts_) ? walked_occluded(parts_, path_in_use(), default_row(), ray, ~0u)
+                             : any_by(ray, {});
+  }
+  KernelsOfScene kernels(const TraceOptions& options, std::size_t rays) const {
+    return {parts_, options, rays};
+  }
+  template <class Answer>
+  FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
+                                const TraceOptions& options) const {
+    const CommonTree* const tree = quick_tree(parts_, options.mask);
+    const FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
+    const bool is_batch = few && (tree == nullptr ? parts_.has_others() : few.may_be_packet());
+    return is_batch ? FewRays<Ray, Answer>() : few;
+  }
+  [[gnu::cold, gnu::noinline]] SceneHit closest_by(const Ray& ray, const TraceOptions& options) const {
+    require_skip(name, options.skip, 1);
+    require_after_in_scene(options, 1);
+    const SceneQuery query = checked_query(parts_, options);
+    const QuietFloats quiet;
+    const bool looks_behind = options.after.first != nullptr;
+    const SceneHit last = looks_behind ? last_hit(options.after, 0) : SceneHit();
+    SceneHit hit;
+    trace_scene(query, {&ray, 1, &hit, nullptr, {}, looks_behind ? &last : nullptr});
+    return hit;
+  }
+  [[gnu::cold, gnu::noinline]] bool any_by(const Ray& ray, const TraceOptions& options) const {
+    require_skip(name, options.skip, 1);
+    const SceneQuery query = checked_query(parts_, options);
+    const QuietFloats quiet;
+    std::uint8_t is_occluded = 0;
+    trace_scene(query, {&ray, 1, nullptr, &is_occluded});
+    return is_occluded != 0;
+  }
+  void trace(RaySource rays, const SceneHitView& hits, const TraceOptions& options) const {
+    rays.skip = {};  // scenes read that of the options
+    const CheckedCall call(name, rays, hits, options);
+    require_after_in_scene(options, rays.size());
+    const SceneQuery query = checked_query(parts_, call.options);
+    if (options.after.first != nullptr) return trace_next(query, call.rays, hits, call.options);
+    trace_all(query, call.rays, HitSink<SceneHit>{hits}, options.threads);
+  }
+  void trace(RaySource rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
+    rays.skip = {};
+    const CheckedCall call(name, rays, occluded, options);
+    SceneQuery query = checked_query(parts_, call.options);
+    query.choice.facing = rays.sides(options.facing);
+    trace_all(query, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+  }
+
+  static void require_order(const TraceOptions& options) { require_exact_in_scene(options); }
+  ListsOfCommon lists(const TraceOptions& options) const { return {quick_tree(parts_, options.mask)}; }
+  SceneHit closest_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
+                        const TraceOptions& options) const {
+    require_exact_in_scene(options);
+    if (const KeptInCommon call(parts_, rejection, options); call.tree != nullptr)
+      return call.owners().spread(call.row().closest(*call.tree->view, ray, call.asked));
+    return first_kept(rejection, options,
+                      [&](const TraceOptions& next) { return scene_.closest(ray, next); });
+  }
+  bool any_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,
+                const TraceOptions& options) const {
+    require_exact_in_scene(options);
+    if (const KeptInCommon call(parts_, rejection, options); call.tree != nullptr)
+      return call.row().any(*call.tree->view, ray, call.asked);
+    return static_cast<bool>(closest_kept(ray, rejection, options));
+  }
+
+ private:
+  const Scene& scene_;
+  const SceneParts& parts_;
+};
+template class RayQueries<Scene>;
+
+}  // namespace raylanes
