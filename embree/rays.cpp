@@ -75,9 +75,10 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
   thread_local std::vector<raylanes::SceneHit> hits;
   thread_local std::vector<std::uint8_t> occluded;
   raylanes::TraceOptions options{.mask = mask};
+  const bool is_small = is_coherent(context) && rays.size() <= most_in_packet;
   if (is_coherent(context)) {
     options.hint = raylanes::BatchHint::coherent;
-    if (are_dense && rays.size() <= most_in_packet) options.mode = raylanes::TraversalMode::packet;
+    if (are_dense && is_small) options.mode = raylanes::TraversalMode::packet;
   }
   for (std::size_t begin = 0; begin < rays.size(); begin += most_in_batch) {
     const std::size_t size = std::min(most_in_batch, rays.size() - begin);
@@ -93,7 +94,7 @@ void trace_batch(const Built& built, const RTCIntersectContext* context, const R
     }
     hits.resize(size);
     built.placed.closest(copies, hits, options);
-    note_density(hits);
+    if (is_small) note_density(hits);
     for (std::size_t i = 0; i < size; ++i)
       if (const raylanes::SceneHit& found = hits[i]) {
         RTCHit hit;

@@ -103,7 +103,7 @@ class Program {
       case 0:
         return rtcSetGeometryMask(g, bytes_.byte());
       case 1:
-        return rtcSetGeometryBuildQuality(g, static_cast<RTCBuildQuality>(bytes_.below(5)));
+        return rtcSetGeometryBuildQuality(g, static_cast<RTCBuildQuality>(bytes_.below(4)));
       case 2:
         return bytes_.chance(128) ? rtcEnableGeometry(g) : rtcDisableGeometry(g);
       case 3:
@@ -220,7 +220,7 @@ class Program {
       const std::size_t count = numbers.size() * 4 / buffer.size;
       if (bytes_.chance(128)) {
         void* to = rtcSetNewGeometryBuffer(g, buffer.type, 0, buffer.format, buffer.size, count);
-        if (to != nullptr) std::memcpy(to, numbers.data(), numbers.size() * 4);
+        if (to != nullptr && count > 0) std::memcpy(to, numbers.data(), numbers.size() * 4);
         continue;
       }
       const std::size_t gap = 4 * bytes_.below(3);
@@ -252,7 +252,7 @@ class Program {
   template <std::size_t size>
   static std::vector<std::array<std::uint32_t, size>> cut(const std::vector<std::uint32_t>& numbers) {
     std::vector<std::array<std::uint32_t, size>> all(numbers.size() / size);
-    std::memcpy(all.data(), numbers.data(), all.size() * size * 4);
+    if (!all.empty()) std::memcpy(all.data(), numbers.data(), all.size() * size * 4);
     return all;
   }
   void make_geometry() {
