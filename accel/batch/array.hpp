@@ -1,15 +1,9 @@
 // An array without initialisation, for large data that is written once.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-#include <memory>
 #include <new>
-#include <span>
-#include <type_traits>
-#include <utility>
-#include <vector>
+
+#include "../standard.hpp"
 
 namespace raylanes {
 

@@ -6,10 +6,6 @@
 // the next part.
 #pragma once
 
-#include <algorithm>
-#include <mutex>
-#include <type_traits>
-
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../dispatch/table/traversal.hpp"

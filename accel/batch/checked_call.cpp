@@ -1,7 +1,5 @@
 #include "checked_call.hpp"
 
-#include <string>
-
 namespace raylanes {
 namespace {
 

@@ -2,12 +2,6 @@
 // floating-point exception traps until the call ends.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <span>
-#include <vector>
-
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/quiet_floats.hpp"

@@ -1,11 +1,6 @@
 // Batches of few rays: the loop of calls with one ray, behind as few checks as those calls have.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <type_traits>
-
 #include <raylanes/traversal.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"

@@ -1,14 +1,10 @@
 // Work spread over threads by oneTBB, by std::thread, or done by the calling thread: one of threads/, by -Dthreads.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <limits>
-
 #include <raylanes/progress.hpp>
 
 #include "../../dispatch/quiet_floats.hpp"
+#include "../standard.hpp"
 
 namespace raylanes {
 

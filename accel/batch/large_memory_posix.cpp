@@ -1,10 +1,6 @@
 #include <sys/mman.h>
 
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
-#include <memory>
 #include <new>
 
 #include "array.hpp"

@@ -1,15 +1,6 @@
 // Reports of a build while it runs, from any thread, and its memory.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
-#include <cstddef>
-#include <mutex>
-#include <span>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
 #include "array.hpp"

@@ -1,16 +1,13 @@
 // A batch of rays in any form, and where its answers go.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/numbers.hpp>
 #include <raylanes/rays.hpp>
 
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"
+#include "../standard.hpp"
 
 namespace raylanes {
 

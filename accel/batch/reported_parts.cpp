@@ -1,5 +1,4 @@
 // Parts whose sizes follow the time that elements take, with a report between them.
-#include <atomic>
 #include <chrono>
 #include <thread>
 

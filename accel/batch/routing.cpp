@@ -1,10 +1,5 @@
 #include "routing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <span>
-
 #include "batch.hpp"
 #include "few_rays.hpp"
 #include "shared_points.hpp"

@@ -3,9 +3,7 @@
 // kept here: of a batch of trees one scope, at most 30 MB; of scenes four within each other, at most 40 MB.
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <vector>
+#include "../standard.hpp"
 
 namespace raylanes {
 

@@ -1,10 +1,5 @@
 #include "shared_points.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 namespace raylanes {
 namespace {
 

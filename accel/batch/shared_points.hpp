@@ -2,13 +2,10 @@
 // finely rays look at a tree from there.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <span>
-
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"
+#include "../standard.hpp"
 
 namespace raylanes {
 

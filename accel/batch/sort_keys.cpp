@@ -2,8 +2,6 @@
 
 #ifdef RAYLANES_VQSORT
 #include <hwy/contrib/sort/vqsort.h>
-#else
-#include <algorithm>
 #endif
 
 #include "../../dispatch/bits.hpp"

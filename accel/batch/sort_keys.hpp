@@ -2,11 +2,10 @@
 // in which neighbours come one after the other: along a curve through the cells of a grid (Morton 1966).
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/numbers.hpp>
+
+#include "../standard.hpp"
 
 namespace raylanes {
 

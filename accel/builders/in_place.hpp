@@ -1,8 +1,6 @@
 // Splits that move references about in their array.
 #pragma once
 
-#include <cmath>
-
 #include "top_down.hpp"
 
 namespace raylanes {

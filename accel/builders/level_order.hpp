@@ -2,9 +2,6 @@
 // by level, each level shared out among threads; then subtrees, each by one thread.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "../batch/in_parallel.hpp"
 #include "../batch/meters.hpp"
 

@@ -1,7 +1,5 @@
 #include "linked_tree.hpp"
 
-#include <algorithm>
-
 namespace raylanes {
 namespace {
 

@@ -1,10 +1,6 @@
 // A binary tree whose subtrees can change places: nodes know their parents, children lie side by side in pairs.
 #pragma once
 
-#include <optional>
-#include <utility>
-#include <vector>
-
 #include "../layout/binary_tree.hpp"
 #include "../layout/reference.hpp"
 

@@ -1,8 +1,6 @@
 // The first and the last steps of a build over triangles, for any tree.
 #pragma once
 
-#include <string>
-
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/checked.hpp"

@@ -1,8 +1,5 @@
 #include "mesh_references.hpp"
 
-#include <stdexcept>
-#include <string>
-
 namespace raylanes {
 
 void require_triangle_count(const char* tree, std::size_t triangles) {

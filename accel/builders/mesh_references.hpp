@@ -1,11 +1,7 @@
 // References that builders begin with.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
-#include <cstring>
-#include <utility>
-#include <vector>
 
 #include <raylanes/mesh.hpp>
 

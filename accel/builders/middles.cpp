@@ -1,5 +1,4 @@
 // Builders that cut at a middle: of the box, or of the references in order.
-#include <algorithm>
 
 #include "in_place.hpp"
 

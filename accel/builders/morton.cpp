@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "../batch/sort_keys.hpp"
 #include "in_place.hpp"

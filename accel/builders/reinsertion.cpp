@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "../batch/array.hpp"
 #include "../batch/in_parallel.hpp"

@@ -1,8 +1,6 @@
 // How binary trees grow from their root, in the order of level_order.hpp. Who splits is a type.
 #pragma once
 
-#include <utility>
-
 #include "../batch/in_parallel.hpp"
 #include "../batch/scratch.hpp"
 #include "builder_table.hpp"

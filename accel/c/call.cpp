@@ -1,10 +1,7 @@
 #include "call.hpp"
 
 #include <cstdio>
-#include <limits>
 #include <new>
-#include <stdexcept>
-#include <string>
 #include <system_error>
 
 #include <raylanes/version.hpp>

@@ -3,14 +3,10 @@
 
 #include <raylanes/raylanes.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/checked.hpp"
+#include "../standard.hpp"
 
 // Lists as C holds them, of items of any type.
 struct raylanes_lists {

@@ -1,7 +1,5 @@
 #include "options.hpp"
 
-#include <string>
-
 #include <raylanes/doubles.hpp>
 
 namespace raylanes::c {

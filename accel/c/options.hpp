@@ -1,10 +1,6 @@
 // Options as C gives them, and what the classes take instead.
 #pragma once
 
-#include <algorithm>
-#include <cstring>
-#include <limits>
-
 #include <raylanes/bvh.hpp>
 #include <raylanes/queries.hpp>
 

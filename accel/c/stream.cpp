@@ -1,11 +1,8 @@
 #include "stream.hpp"
 
-#include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "call.hpp"
 

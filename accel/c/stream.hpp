@@ -1,10 +1,10 @@
 // Streams over the caller's memory and files, for trees that are saved and loaded.
 #pragma once
 
-#include <cstddef>
-#include <stdexcept>
 #include <streambuf>
 #include <system_error>
+
+#include "../standard.hpp"
 
 namespace raylanes::c {
 

@@ -1,8 +1,6 @@
 // A tree over triangles of doubles: nodes of floats in a frame of the tree, leaves of doubles.
 #pragma once
 
-#include <memory>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"

@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../batch/few_rays.hpp"

@@ -1,5 +1,4 @@
 // Files of Bvh and BvhD.
-#include <limits>
 
 #include <raylanes/bvh.hpp>
 #include <raylanes/doubles.hpp>

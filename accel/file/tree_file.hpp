@@ -2,18 +2,7 @@
 // what was read. docs/tree_file.md has the layout.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <iosfwd>
-#include <limits>
-#include <memory>
-#include <span>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 #include "../doubles/bvh_d_arrays.hpp"
 #include "../layout/kdtree_arrays.hpp"

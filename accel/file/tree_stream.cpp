@@ -1,8 +1,5 @@
-#include <array>
-#include <bit>
 #include <istream>
 #include <ostream>
-#include <stdexcept>
 
 #include "tree_file.hpp"
 

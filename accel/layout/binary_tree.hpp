@@ -1,9 +1,6 @@
 // The binary tree that builders make and that collapsing turns into a wide one.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 

@@ -1,8 +1,6 @@
 // The box around what lies in the lanes of rows, as nodes and blocks have them.
 #pragma once
 
-#include <cstddef>
-
 #include "../mesh/bounding_boxes.hpp"
 #include "four_floats.hpp"
 

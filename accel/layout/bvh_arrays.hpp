@@ -1,8 +1,6 @@
 // From a mesh, by a binary tree, to the wide tree that is traced.
 #pragma once
 
-#include <vector>
-
 #include <raylanes/bvh.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"

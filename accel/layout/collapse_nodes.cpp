@@ -1,5 +1,3 @@
-#include <stdexcept>
-#include <string>
 
 #include "../batch/in_parallel.hpp"
 #include "bvh_arrays.hpp"

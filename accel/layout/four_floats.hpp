@@ -3,14 +3,12 @@
 // answer NaN and zeros differently on SSE2 and NEON, where a tree must have the same bytes.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-
 #if defined(__aarch64__)
 #include <arm_neon.h>
 #else
 #include <emmintrin.h>
+
+#include "../standard.hpp"
 #endif
 
 namespace raylanes {

@@ -1,10 +1,6 @@
 // The nodes of a k-d tree before its leaves are made.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include <raylanes/tree.hpp>
 
 #include "reference.hpp"

@@ -1,8 +1,6 @@
 // From cells to a tree that is traced.
 #pragma once
 
-#include <vector>
-
 #include <raylanes/kdtree.hpp>
 
 #include "../mesh/bounding_boxes.hpp"

@@ -1,10 +1,5 @@
 #include "leaves.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-
 #include "../batch/in_parallel.hpp"
 #include "../batch/sort_keys.hpp"
 #include "box_of_lanes.hpp"

@@ -1,15 +1,6 @@
 // The leaves of a tree: blocks of the corners of up to eight triangles.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 
 #include "../../dispatch/bits.hpp"

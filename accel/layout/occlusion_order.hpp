@@ -1,11 +1,6 @@
 // The order of a node's children for rays that ask only whether they hit: first those that are likely to stop them.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <span>
-
 #include "../batch/array.hpp"
 #include "cost.hpp"
 #include "leaves.hpp"

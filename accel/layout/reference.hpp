@@ -2,11 +2,6 @@
 // x86-64 has.
 #pragma once
 
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-
 #include <raylanes/tree.hpp>
 
 #include "../mesh/bounding_boxes.hpp"

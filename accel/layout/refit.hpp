@@ -1,11 +1,6 @@
 // A tree that follows its triangles.
 #pragma once
 
-#include <array>
-#include <bit>
-#include <span>
-#include <vector>
-
 #include "../batch/in_parallel.hpp"
 #include "box_of_lanes.hpp"
 #include "bvh_arrays.hpp"

@@ -1,8 +1,6 @@
 // Which binary nodes become wide nodes, and which subtrees become leaves.
 #pragma once
 
-#include <cstdint>
-
 #include "../batch/array.hpp"
 #include "../batch/meters.hpp"
 #include "binary_tree.hpp"

@@ -1,10 +1,5 @@
 #include "boundary.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
 #include "shared_edges.hpp"
 
 namespace raylanes {

@@ -1,13 +1,10 @@
 // The boundary of a mesh as closed loops.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include <raylanes/numbers.hpp>
 #include <raylanes/progress.hpp>
+
+#include "../standard.hpp"
 
 namespace raylanes {
 

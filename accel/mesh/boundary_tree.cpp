@@ -1,11 +1,6 @@
 #include "boundary_tree.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
 #include <thread>
-#include <utility>
 
 #include "../../dispatch/bits.hpp"
 #include "../batch/in_parallel.hpp"

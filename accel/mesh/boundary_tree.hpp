@@ -1,10 +1,6 @@
 // The boundary of a mesh as kernels walk it: a tree over short loops, with the moments of their caps.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "../../dispatch/table/winding.hpp"
 #include "boundary.hpp"
 

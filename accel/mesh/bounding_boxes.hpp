@@ -1,13 +1,11 @@
 // Boxes as builders use them: grown around points and other boxes.
 #pragma once
 
-#include <algorithm>
-#include <limits>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/types.hpp>
 
 #include "../../dispatch/bits.hpp"
+#include "../standard.hpp"
 
 namespace raylanes {
 

@@ -1,11 +1,3 @@
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <span>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/doubles.hpp>

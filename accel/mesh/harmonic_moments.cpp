@@ -1,8 +1,6 @@
 #include "harmonic_moments.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
+#include "../standard.hpp"
 
 namespace raylanes {
 

@@ -1,9 +1,3 @@
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstring>
-#include <stdexcept>
-#include <string>
 
 #include <raylanes/doubles.hpp>
 

@@ -1,12 +1,11 @@
 // Reports from loops of many small steps, such as the comparisons of a sort.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
-#include <cstdint>
-#include <limits>
 
 #include <raylanes/progress.hpp>
+
+#include "../standard.hpp"
 
 namespace raylanes {
 

@@ -1,14 +1,6 @@
 // Which sides of triangles share an edge: by the positions of its ends, bit for bit but for the sign of zero.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include <raylanes/mesh.hpp>
 #include <raylanes/numbers.hpp>
 #include <raylanes/types.hpp>

@@ -1,5 +1,4 @@
 // Points in trees of floats: closest points, inside and outside, distances.
-#include <limits>
 
 #include <raylanes/triangle_tree.hpp>
 

@@ -1,8 +1,6 @@
 // Closest points of a batch, of floats or doubles: points are brought into order, then looked for.
 #pragma once
 
-#include <algorithm>
-
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/points.hpp"
 #include "../batch/array.hpp"

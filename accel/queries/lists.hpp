@@ -1,12 +1,6 @@
 // Lists of what rays meet, in the kernels' room: one part of a batch at a time.
 #pragma once
 
-#include <algorithm>
-#include <span>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/double_rays.hpp"
 #include "../../dispatch/table/kernel_table.hpp"

@@ -1,7 +1,5 @@
 #include "locations.hpp"
 
-#include <mutex>
-
 #include <raylanes/doubles.hpp>
 
 #include "../../dispatch/checked.hpp"

@@ -1,11 +1,6 @@
 // Points inside and outside of a surface, and their winding numbers: one source for floats and doubles.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/table/double_rays.hpp"

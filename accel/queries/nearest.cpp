@@ -1,6 +1,4 @@
 // The nearest hit, or whether there is one: options and views are checked, then rays are traced.
-#include <stdexcept>
-#include <string>
 
 #include <raylanes/rays.hpp>
 #include <raylanes/triangle_tree.hpp>

@@ -1,8 +1,6 @@
 // Hits behind others, and hits of which a caller keeps some.
 #pragma once
 
-#include <type_traits>
-
 #include "../../dispatch/table/queries.hpp"
 #include "../batch/batch.hpp"
 #include "filters/filtered_lists.hpp"

@@ -2,12 +2,6 @@
 // numbers. A hit that may be on an edge is looked for among the crossings around it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include "../../dispatch/bits.hpp"
 #include "../mesh/boundary.hpp"
 #include "lists.hpp"

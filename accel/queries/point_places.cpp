@@ -1,9 +1,5 @@
 #include "point_places.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "../../dispatch/bits.hpp"
 
 namespace raylanes {

@@ -2,9 +2,6 @@
 // where little is in the way; of points in a line along an axis by the crossings of that line.
 #pragma once
 
-#include <functional>
-#include <limits>
-
 #include "lists.hpp"
 
 namespace raylanes {

@@ -1,10 +1,6 @@
 // Lists for the caller: all hits of rays, their crossings with a surface, and how many there are.
 #pragma once
 
-#include <algorithm>
-#include <mutex>
-#include <vector>
-
 #include "../batch/checked_call.hpp"
 #include "lists.hpp"
 

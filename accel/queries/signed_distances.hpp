@@ -1,11 +1,6 @@
 // Signed distances, of floats or doubles: closest points say how far, locations on which side.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include <raylanes/queries.hpp>
 
 #include "../../dispatch/checked.hpp"

@@ -1,11 +1,6 @@
 // Stretches of rays within solids, from crossings: what trees and scenes share.
 #pragma once
 
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
-#include <vector>
-
 #include <raylanes/numbers.hpp>
 #include <raylanes/stretches.hpp>
 

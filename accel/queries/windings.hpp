@@ -1,8 +1,6 @@
 // Winding numbers of points: crossings of a ray from each, and the boundary seen against the ray.
 #pragma once
 
-#include <cmath>
-
 #include "../../dispatch/table/winding.hpp"
 #include "../batch/sort_keys.hpp"
 #include "point_places.hpp"

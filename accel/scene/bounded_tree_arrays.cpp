@@ -1,10 +1,5 @@
 #include "bounded_tree_arrays.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "../../dispatch/checked.hpp"
 #include "../builders/builder_table.hpp"
 #include "../layout/bvh_arrays.hpp"

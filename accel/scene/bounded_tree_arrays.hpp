@@ -1,12 +1,6 @@
 // A tree over boxes, without leaves of its own: a reference to one says where it begins in the order of primitives.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
-
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"

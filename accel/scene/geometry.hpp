@@ -2,10 +2,7 @@
 // derives from Geometry, with the members of Scene that take it, and a row in scene_file.cpp.
 #pragma once
 
-#include <atomic>
 #include <iosfwd>
-#include <memory>
-#include <vector>
 
 #include <raylanes/scene.hpp>
 

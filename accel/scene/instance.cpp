@@ -1,9 +1,5 @@
 #include "instance.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-
 #include "../../dispatch/table/tree_view.hpp"
 #include "bounded_tree_arrays.hpp"
 

@@ -1,10 +1,8 @@
 // Rays that come to none of a top level's boxes, told before a visit is set up.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "../../dispatch/table/tree_view.hpp"
+#include "../standard.hpp"
 
 namespace raylanes {
 

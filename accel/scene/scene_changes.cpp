@@ -1,5 +1,4 @@
 // How scenes come about and change.
-#include <algorithm>
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"

@@ -2,7 +2,6 @@
 // save themselves. docs/tree_file.md has the format.
 #include <istream>
 #include <ostream>
-#include <string>
 
 #include "../../dispatch/quiet_floats.hpp"
 #include "../file/tree_file.hpp"

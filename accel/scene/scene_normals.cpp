@@ -1,7 +1,4 @@
 // Normals of hits in scenes.
-#include <limits>
-#include <stdexcept>
-#include <vector>
 
 #include <raylanes/surface.hpp>
 

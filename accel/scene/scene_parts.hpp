@@ -1,10 +1,6 @@
 // The parts of a scene.
 #pragma once
 
-#include <memory>
-#include <stdexcept>
-#include <string>
-
 #include "common/common_tree.hpp"
 
 namespace raylanes {

@@ -1,9 +1,3 @@
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstring>
-#include <optional>
-#include <span>
 
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/spheres.hpp"

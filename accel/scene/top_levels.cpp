@@ -1,5 +1,4 @@
 // The trees over a scene's instances.
-#include <algorithm>
 
 #include "../queries/traced_tree.hpp"
 #include "scene_parts.hpp"

@@ -1,9 +1,6 @@
 // Triangles in scenes.
-#include <atomic>
 #include <istream>
 #include <ostream>
-#include <stdexcept>
-#include <string>
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"

@@ -1,7 +1,5 @@
 #include "visits.hpp"
 
-#include <algorithm>
-
 #include "../../dispatch/table/kernel_table.hpp"
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"

@@ -1,6 +1,4 @@
 // From a mesh of doubles to its tree: boxes in the frame for the builders of trees of floats, then leaves of doubles.
-#include <algorithm>
-#include <cstring>
 
 #include "../../dispatch/bits.hpp"
 #include "../builders/mesh_build.hpp"

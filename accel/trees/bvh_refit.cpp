@@ -1,6 +1,4 @@
 // Trees that follow their meshes: refit, and how much worse they get by it.
-#include <stdexcept>
-#include <string>
 
 #include <raylanes/bvh.hpp>
 

@@ -1,8 +1,4 @@
 // The corners of triangles that hits name, from the leaves of a tree.
-#include <algorithm>
-#include <limits>
-#include <stdexcept>
-#include <vector>
 
 #include "../../dispatch/bits.hpp"
 #include "../../dispatch/checked.hpp"

@@ -1,4 +1,3 @@
-#include <stdexcept>
 
 #include "../builders/builder_table.hpp"
 #include "../builders/kd/kd_builders.hpp"

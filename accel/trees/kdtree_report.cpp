@@ -1,4 +1,3 @@
-#include <algorithm>
 
 #include "../layout/kdtree_arrays.hpp"
 

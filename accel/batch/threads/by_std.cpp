@@ -1,13 +1,9 @@
 // With -Dthreads=std. Threads live as long as the call that started them: nothing is
 // left to a process that forks, ends or unloads the library.
-#include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "../in_parallel.hpp"
 

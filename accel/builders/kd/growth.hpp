@@ -2,10 +2,7 @@
 // type.
 #pragma once
 
-#include <span>
-#include <stdexcept>
 #include <tuple>
-#include <utility>
 
 #include "../level_order.hpp"
 #include "kd_builders.hpp"

@@ -1,5 +1,3 @@
-#include <cmath>
-#include <mutex>
 
 #include "plane_costs.hpp"
 

@@ -1,9 +1,6 @@
 // Costs of planes by the surface area heuristic (MacDonald, Booth 1990), and the best of many planes.
 #pragma once
 
-#include <array>
-#include <span>
-
 #include "growth.hpp"
 
 namespace raylanes {

@@ -1,9 +1,6 @@
 // Bins along each axis, and the border between them where the surface-area heuristic says to split (Wald 2007).
 #pragma once
 
-#include <algorithm>
-#include <array>
-
 #include "../in_place.hpp"
 
 namespace raylanes {

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "../builder_table.hpp"
 

@@ -2,9 +2,6 @@
 // SurfaceDoor of its own, in the class's file.
 #pragma once
 
-#include <algorithm>
-#include <optional>
-
 #include <raylanes/ray_queries.hpp>
 
 #include "../../../dispatch/quiet_floats.hpp"

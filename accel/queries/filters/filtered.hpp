@@ -1,10 +1,6 @@
 // Hits that a filter turns down, and the next hits of their rays: the loop that trees and scenes share.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "../../batch/checked_call.hpp"
 
 namespace raylanes {

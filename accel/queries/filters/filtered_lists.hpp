@@ -1,8 +1,6 @@
 // Filters of batches that find next hits in lists: the hits of a ray in order, from one walk.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <numeric>
 
 #include "../ray_lists.hpp"

@@ -1,7 +1,5 @@
 #include "common_tree.hpp"
 
-#include <limits>
-
 #include "../../queries/traced_tree.hpp"
 
 namespace raylanes {

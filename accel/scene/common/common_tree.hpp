@@ -1,12 +1,6 @@
 // Trees over the meshes of a scene that stand where they were made, one for each mask.
 #pragma once
 
-#include <algorithm>
-#include <atomic>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "../../../dispatch/table/traversal.hpp"
 #include "../../layout/reference.hpp"
 #include "../geometry.hpp"

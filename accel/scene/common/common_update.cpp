@@ -1,7 +1,5 @@
 // Which instances have trees in common, one for each mask in use, up to max_groups. A tree is built again only if a
 // quarter of its triangles has changed: a part that moves, or one that is added, does not cost a build of all others.
-#include <bit>
-#include <functional>
 #include <map>
 #include <numeric>
 

@@ -2,9 +2,6 @@
 #pragma once
 
 #include <numeric>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "../../batch/scratch.hpp"
 #include "../../queries/ray_lists.hpp"

@@ -1,6 +1,4 @@
 // Surfaces in scenes: how SurfaceQueries<Scene> answers.
-#include <algorithm>
-#include <optional>
 #include <tuple>
 
 #include "../../queries/answers/surface_answers.hpp"

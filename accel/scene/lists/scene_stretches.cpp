@@ -1,5 +1,4 @@
 // Stretches of rays within the instances of a scene: the crossings of each instance's triangles, taken together.
-#include <algorithm>
 #include <tuple>
 
 #include "../../../dispatch/quiet_floats.hpp"

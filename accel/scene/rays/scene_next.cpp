@@ -1,6 +1,4 @@
 // Hits in scenes behind others.
-#include <stdexcept>
-#include <string>
 
 #include "../../queries/next.hpp"
 #include "../scene_parts.hpp"

@@ -1,6 +1,4 @@
 // Rays in scenes: how RayQueries<Scene> answers.
-#include <algorithm>
-#include <stdexcept>
 
 #include "../../../dispatch/quiet_floats.hpp"
 #include "../../../dispatch/table/kernel_table.hpp"
