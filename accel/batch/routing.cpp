@@ -13,6 +13,8 @@ constexpr std::size_t min_coherent_stream = 64, min_coherent_packet = 512;
 // rest. In the rest, rays from outside mostly hit one of the first triangles on their way: single rays find it sooner.
 constexpr StreamSizes streams_of_shared{384, 320}, streams_of_rest{1536, 1024};
 constexpr std::size_t min_stream_from_outside = 8192;
+// So many rays in one direction are put together at a time: more leave the second cache before they are traced.
+constexpr std::size_t max_parallel_call = 32768;
 // So many rays of a batch at a time are searched for a shared end, if the caller says that there are several.
 constexpr std::size_t rays_of_an_end = 4096;
 
@@ -219,6 +221,7 @@ void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, 
   choice.end = rays.shared_end();
   BatchPlan plan{threads, choice.counters};
   plan.progress = choice.progress, plan.fixed_parts = choice.fixed_parts;
+  if (rays.segments != nullptr && rays.segments->is_direction) plan.max_call = max_parallel_call;
   over_calls(
       plan, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n); },
       [&](const RayCall<typename Sink::Answer>& call) {
