@@ -1,6 +1,7 @@
-// The functions of one kind of tree. A file that includes this defines before, and forgets after:
+// The functions of one kind of tree: its handle, rays. A file that includes this defines before, and forgets after:
 //   RAYLANES_HANDLE        what C holds: raylanes_bvh
-//   RAYLANES_CALL(name)    a function: raylanes_bvh_closest
+//   RAYLANES_CALLS         the handle of prepared calls: raylanes_bvh_calls
+//   RAYLANES_CALL(of_floats, of_doubles)  a function, one of these
 //   RAYLANES_RECORD(name)  a record: raylanes_hit
 //   RAYLANES_OPTIONS(name) a type of C++: TraceOptions
 //   RAYLANES_NUMBERS       a namespace in raylanes::c with the types Number and Tree: float and Bvh
@@ -17,7 +18,7 @@
 struct RAYLANES_HANDLE {
   raylanes::c::RAYLANES_NUMBERS::Tree tree;
 };
-struct RAYLANES_CALL(calls) {
+struct RAYLANES_CALLS {
   decltype(std::declval<raylanes::c::RAYLANES_NUMBERS::Tree&>().calls()) calls;
 };
 
@@ -65,7 +66,7 @@ RAYLANES_HANDLE* handle_of(Tree tree) {
   return new RAYLANES_HANDLE{std::move(tree)};
 }
 
-const auto& calls_of(const RAYLANES_CALL(calls) * handle) {
+const auto& calls_of(const RAYLANES_CALLS* handle) {
   require_pointer("calls", handle);
   return handle->calls;
 }
@@ -95,10 +96,12 @@ raylanes_lists* lists_of(RayLists<Item> lists) {
 
 extern "C" {
 
-raylanes_status RAYLANES_CALL(create)(RAYLANES_HANDLE** tree, const void* vertices, std::size_t vertex_count,
-                                      std::size_t vertex_stride, const void* triangles,
-                                      std::size_t triangle_count, std::size_t triangle_stride,
-                                      const raylanes_build_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_create,
+                              raylanes_bvhd_create)(RAYLANES_HANDLE** tree, const void* vertices,
+                                                    std::size_t vertex_count, std::size_t vertex_stride,
+                                                    const void* triangles, std::size_t triangle_count,
+                                                    std::size_t triangle_stride,
+                                                    const raylanes_build_options* options) {
   return status_of([&] {
     make("tree", tree, [&] {
       return handle_of(Tree(vertices_of("vertices", vertices, vertex_count, vertex_stride),
@@ -108,10 +111,11 @@ raylanes_status RAYLANES_CALL(create)(RAYLANES_HANDLE** tree, const void* vertic
   });
 }
 
-raylanes_status RAYLANES_CALL(refit)(RAYLANES_HANDLE* tree, const void* vertices, std::size_t vertex_count,
-                                     std::size_t vertex_stride, const void* triangles,
-                                     std::size_t triangle_count, std::size_t triangle_stride,
-                                     std::int32_t threads) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_refit,
+                              raylanes_bvhd_refit)(RAYLANES_HANDLE* tree, const void* vertices,
+                                                   std::size_t vertex_count, std::size_t vertex_stride,
+                                                   const void* triangles, std::size_t triangle_count,
+                                                   std::size_t triangle_stride, std::int32_t threads) {
   return status_of([&] {
     require_pointer("tree", tree);
     tree->tree.refit(vertices_of("vertices", vertices, vertex_count, vertex_stride),
@@ -119,12 +123,13 @@ raylanes_status RAYLANES_CALL(refit)(RAYLANES_HANDLE* tree, const void* vertices
   });
 }
 
-void RAYLANES_CALL(destroy)(RAYLANES_HANDLE* tree) {
+void RAYLANES_CALL(raylanes_bvh_destroy, raylanes_bvhd_destroy)(RAYLANES_HANDLE* tree) {
   delete tree;
 }
 
-raylanes_status RAYLANES_CALL(save)(const RAYLANES_HANDLE* tree, void* buffer, std::size_t capacity,
-                                    std::size_t* size) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_save, raylanes_bvhd_save)(const RAYLANES_HANDLE* tree,
+                                                                     void* buffer, std::size_t capacity,
+                                                                     std::size_t* size) {
   return status_of([&] {
     require_pointer("size", size);
     checked_stride("buffer", buffer, capacity, 1, 1);
@@ -136,14 +141,16 @@ raylanes_status RAYLANES_CALL(save)(const RAYLANES_HANDLE* tree, void* buffer, s
   });
 }
 
-raylanes_status RAYLANES_CALL(save_file)(const RAYLANES_HANDLE* tree, const char* file) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_save_file, raylanes_bvhd_save_file)(const RAYLANES_HANDLE* tree,
+                                                                               const char* file) {
   return status_of([&] {
     const Tree& saved = tree_of(tree);
     with_file<std::ofstream>(file, [&](std::ostream& stream) { saved.save(stream); });
   });
 }
 
-raylanes_status RAYLANES_CALL(load)(RAYLANES_HANDLE** tree, const void* bytes, std::size_t size) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_load, raylanes_bvhd_load)(RAYLANES_HANDLE** tree,
+                                                                     const void* bytes, std::size_t size) {
   return status_of([&] {
     make("tree", tree, [&] {
       checked_stride("bytes", bytes, size, 1, 1);
@@ -154,7 +161,8 @@ raylanes_status RAYLANES_CALL(load)(RAYLANES_HANDLE** tree, const void* bytes, s
   });
 }
 
-raylanes_status RAYLANES_CALL(load_file)(RAYLANES_HANDLE** tree, const char* file) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_load_file, raylanes_bvhd_load_file)(RAYLANES_HANDLE** tree,
+                                                                               const char* file) {
   return status_of([&] {
     make("tree", tree, [&] {
       return with_file<std::ifstream>(file,
@@ -163,31 +171,41 @@ raylanes_status RAYLANES_CALL(load_file)(RAYLANES_HANDLE** tree, const char* fil
   });
 }
 
-raylanes_status RAYLANES_CALL(closest)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                       std::size_t stride, void* hits, std::size_t hit_stride,
-                                       const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest,
+                              raylanes_bvhd_closest)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                     std::size_t n, std::size_t stride, void* hits,
+                                                     std::size_t hit_stride,
+                                                     const raylanes_ray_options* options) {
   return status_of([&] {
     tree_of(tree).closest(rays_of(rays, n, stride), hits_of(hits, n, hit_stride),
                           ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
   });
 }
 
-raylanes_status RAYLANES_CALL(occluded)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                        std::size_t stride, std::uint8_t* occluded,
-                                        const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded,
+                              raylanes_bvhd_occluded)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                      std::size_t n, std::size_t stride,
+                                                      std::uint8_t* occluded,
+                                                      const raylanes_ray_options* options) {
   return status_of([&] {
     tree_of(tree).occluded(rays_of(rays, n, stride), span_of<std::uint8_t>("occluded", occluded, n),
                            ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
   });
 }
 
-raylanes_status RAYLANES_CALL(closest1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
-                                        RAYLANES_RECORD(hit) * hit, const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest1,
+                              raylanes_bvhd_closest1)(const RAYLANES_HANDLE* tree,
+                                                      const RAYLANES_RECORD(ray) * ray,
+                                                      RAYLANES_RECORD(hit) * hit,
+                                                      const raylanes_ray_options* options) {
   return find_one(ray, hit, options, [&](const auto&... asked) { return tree_of(tree).closest(asked...); });
 }
 
-raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYLANES_RECORD(ray) * ray,
-                                         std::uint8_t* occluded, const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded1,
+                              raylanes_bvhd_occluded1)(const RAYLANES_HANDLE* tree,
+                                                       const RAYLANES_RECORD(ray) * ray,
+                                                       std::uint8_t* occluded,
+                                                       const raylanes_ray_options* options) {
   return status_of([&] {
     require_pointer("ray", ray);
     const auto one = Rays(ray, 1)[0];
@@ -199,28 +217,32 @@ raylanes_status RAYLANES_CALL(occluded1)(const RAYLANES_HANDLE* tree, const RAYL
   });
 }
 
-raylanes_status RAYLANES_CALL(calls_create)(RAYLANES_CALL(calls) * *calls, const RAYLANES_HANDLE* tree,
-                                            const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_calls_create,
+                              raylanes_bvhd_calls_create)(RAYLANES_CALLS** calls, const RAYLANES_HANDLE* tree,
+                                                          const raylanes_ray_options* options) {
   return status_of([&] {
     make("calls", calls, [&] {
-      return new RAYLANES_CALL(calls){
-          tree_of(tree).calls(ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1))};
+      return new RAYLANES_CALLS{tree_of(tree).calls(ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, 1))};
     });
   });
 }
 
-void RAYLANES_CALL(calls_destroy)(RAYLANES_CALL(calls) * calls) {
+void RAYLANES_CALL(raylanes_bvh_calls_destroy, raylanes_bvhd_calls_destroy)(RAYLANES_CALLS* calls) {
   delete calls;
 }
 
-raylanes_status RAYLANES_CALL(calls_closest)(const RAYLANES_CALL(calls) * calls,
-                                             const RAYLANES_RECORD(ray) * ray, RAYLANES_RECORD(hit) * hit) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_calls_closest,
+                              raylanes_bvhd_calls_closest)(const RAYLANES_CALLS* calls,
+                                                           const RAYLANES_RECORD(ray) * ray,
+                                                           RAYLANES_RECORD(hit) * hit) {
   return find_one(ray, hit, nullptr,
                   [&](const auto& one, const auto&...) { return calls_of(calls).closest(one); });
 }
 
-raylanes_status RAYLANES_CALL(calls_occluded)(const RAYLANES_CALL(calls) * calls,
-                                              const RAYLANES_RECORD(ray) * ray, std::uint8_t* occluded) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_calls_occluded,
+                              raylanes_bvhd_calls_occluded)(const RAYLANES_CALLS* calls,
+                                                            const RAYLANES_RECORD(ray) * ray,
+                                                            std::uint8_t* occluded) {
   return status_of([&] {
     require_pointer("ray", ray);
     const auto one = Rays(ray, 1)[0];
@@ -229,10 +251,9 @@ raylanes_status RAYLANES_CALL(calls_occluded)(const RAYLANES_CALL(calls) * calls
   });
 }
 
-raylanes_status RAYLANES_CALL(occluded_from)(const RAYLANES_HANDLE* tree, const Number* from,
-                                             const void* points, std::size_t n, std::size_t stride,
-                                             Number start, Number end, std::uint8_t* occluded,
-                                             const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_from, raylanes_bvhd_occluded_from)(
+    const RAYLANES_HANDLE* tree, const Number* from, const void* points, std::size_t n, std::size_t stride,
+    Number start, Number end, std::uint8_t* occluded, const raylanes_ray_options* options) {
   return status_of([&] {
     const SegmentEndsOf<Number> ends{start, end};
     tree_of(tree).occluded_from(point_of("from", from), vertices_of("points", points, n, stride),
@@ -241,9 +262,9 @@ raylanes_status RAYLANES_CALL(occluded_from)(const RAYLANES_HANDLE* tree, const 
   });
 }
 
-raylanes_status RAYLANES_CALL(occluded_towards)(const RAYLANES_HANDLE* tree, const Number* direction,
-                                                const void* points, std::size_t n, std::size_t stride,
-                                                std::uint8_t* occluded, const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_towards, raylanes_bvhd_occluded_towards)(
+    const RAYLANES_HANDLE* tree, const Number* direction, const void* points, std::size_t n,
+    std::size_t stride, std::uint8_t* occluded, const raylanes_ray_options* options) {
   return status_of([&] {
     tree_of(tree).occluded_towards(point_of("direction", direction), vertices_of("points", points, n, stride),
                                    span_of<std::uint8_t>("occluded", occluded, n),
@@ -251,25 +272,31 @@ raylanes_status RAYLANES_CALL(occluded_towards)(const RAYLANES_HANDLE* tree, con
   });
 }
 
-raylanes_status RAYLANES_CALL(closest_crossing)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                                std::size_t stride, void* hits, std::size_t hit_stride,
-                                                const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing,
+                              raylanes_bvhd_closest_crossing)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                              std::size_t n, std::size_t stride, void* hits,
+                                                              std::size_t hit_stride,
+                                                              const raylanes_ray_options* options) {
   return status_of([&] {
     tree_of(tree).closest_crossing(rays_of(rays, n, stride), hits_of(hits, n, hit_stride),
                                    ray_options<RAYLANES_OPTIONS(TraceOptions)>(options, n));
   });
 }
 
-raylanes_status RAYLANES_CALL(closest_crossing1)(const RAYLANES_HANDLE* tree,
-                                                 const RAYLANES_RECORD(ray) * ray, RAYLANES_RECORD(hit) * hit,
-                                                 const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing1,
+                              raylanes_bvhd_closest_crossing1)(const RAYLANES_HANDLE* tree,
+                                                               const RAYLANES_RECORD(ray) * ray,
+                                                               RAYLANES_RECORD(hit) * hit,
+                                                               const raylanes_ray_options* options) {
   return find_one(ray, hit, options,
                   [&](const auto&... asked) { return tree_of(tree).closest_crossing(asked...); });
 }
 
-raylanes_status RAYLANES_CALL(all_hits)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                        std::size_t stride, raylanes_lists** lists,
-                                        const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_all_hits,
+                              raylanes_bvhd_all_hits)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                      std::size_t n, std::size_t stride,
+                                                      raylanes_lists** lists,
+                                                      const raylanes_ray_options* options) {
   return status_of([&] {
     make("lists", lists, [&] {
       return lists_of(tree_of(tree).all_hits(rays_of(rays, n, stride), ray_options<ListOptions>(options, n)));
@@ -277,9 +304,11 @@ raylanes_status RAYLANES_CALL(all_hits)(const RAYLANES_HANDLE* tree, const void*
   });
 }
 
-raylanes_status RAYLANES_CALL(crossings)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                         std::size_t stride, raylanes_lists** lists,
-                                         const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_crossings,
+                              raylanes_bvhd_crossings)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                       std::size_t n, std::size_t stride,
+                                                       raylanes_lists** lists,
+                                                       const raylanes_ray_options* options) {
   return status_of([&] {
     make("lists", lists, [&] {
       return lists_of(
@@ -288,72 +317,14 @@ raylanes_status RAYLANES_CALL(crossings)(const RAYLANES_HANDLE* tree, const void
   });
 }
 
-raylanes_status RAYLANES_CALL(count_crossings)(const RAYLANES_HANDLE* tree, const void* rays, std::size_t n,
-                                               std::size_t stride, raylanes_crossing_count* counts,
-                                               const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_count_crossings,
+                              raylanes_bvhd_count_crossings)(const RAYLANES_HANDLE* tree, const void* rays,
+                                                             std::size_t n, std::size_t stride,
+                                                             raylanes_crossing_count* counts,
+                                                             const raylanes_ray_options* options) {
   return status_of([&] {
     tree_of(tree).count_crossings(rays_of(rays, n, stride), span_of<CrossingCount>("counts", counts, n),
                                   ray_options<ListOptions>(options, n));
-  });
-}
-
-raylanes_status RAYLANES_CALL(corners)(const RAYLANES_HANDLE* tree, const void* primitives, std::size_t n,
-                                       std::size_t stride, Number* corners) {
-  return status_of([&] {
-    const Tree& asked = tree_of(tree);
-    const std::size_t apart = checked_stride("primitives", primitives, n, stride, sizeof(std::uint32_t));
-    checked_stride("corners", corners, n, 0, sizeof(CornersOfTriangle));
-    require_alignment("corners", corners, alignof(CornersOfTriangle));
-    asked.corners({primitives, n, apart}, {reinterpret_cast<CornersOfTriangle*>(corners), n});
-  });
-}
-
-raylanes_status RAYLANES_CALL(bounds)(const RAYLANES_HANDLE* tree, Number* lo, Number* hi) {
-  return status_of([&] {
-    const auto box = tree_of(tree).bounds();
-    require_pointer("lo", lo);
-    require_pointer("hi", hi);
-    std::copy(box.lo.begin(), box.lo.end(), lo);
-    std::copy(box.hi.begin(), box.hi.end(), hi);
-  });
-}
-
-raylanes_status RAYLANES_CALL(locate)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
-                                      std::size_t stride, std::uint8_t* locations,
-                                      const raylanes_point_options* options) {
-  return status_of([&] {
-    tree_of(tree).locate(vertices_of("points", points, n, stride),
-                         span_of<Location>("locations", locations, n), point_options<LocateOptions>(options));
-  });
-}
-
-raylanes_status RAYLANES_CALL(closest_points)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
-                                              std::size_t stride, RAYLANES_RECORD(closest_point) * closest,
-                                              const raylanes_point_options* options) {
-  return status_of([&] {
-    tree_of(tree).closest_points(vertices_of("points", points, n, stride),
-                                 span_of<ClosestPointOf<Number>>("closest", closest, n),
-                                 point_options<RAYLANES_OPTIONS(ClosestPointOptions)>(options));
-  });
-}
-
-raylanes_status RAYLANES_CALL(signed_distances)(const RAYLANES_HANDLE* tree, const void* points,
-                                                std::size_t n, std::size_t stride, Number* distances,
-                                                const raylanes_point_options* options) {
-  return status_of([&] {
-    tree_of(tree).signed_distances(vertices_of("points", points, n, stride),
-                                   span_of<Number>("distances", distances, n),
-                                   point_options<RAYLANES_OPTIONS(SignedDistanceOptions)>(options));
-  });
-}
-
-raylanes_status RAYLANES_CALL(winding_numbers)(const RAYLANES_HANDLE* tree, const void* points, std::size_t n,
-                                               std::size_t stride, Number* numbers,
-                                               const raylanes_point_options* options) {
-  return status_of([&] {
-    tree_of(tree).winding_numbers(vertices_of("points", points, n, stride),
-                                  span_of<Number>("numbers", numbers, n),
-                                  point_options<WindingOptions>(options));
   });
 }
 

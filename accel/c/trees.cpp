@@ -20,20 +20,25 @@ using Tree = BvhD;
 }  // namespace raylanes::c
 
 #define RAYLANES_HANDLE raylanes_bvh
-#define RAYLANES_CALL(name) raylanes_bvh_##name
+#define RAYLANES_CALLS raylanes_bvh_calls
+#define RAYLANES_CALL(of_floats, of_doubles) of_floats
 #define RAYLANES_RECORD(name) raylanes_##name
 #define RAYLANES_OPTIONS(name) name
 #define RAYLANES_NUMBERS of_floats
 #include "tree_calls.hpp"
+#include "tree_points.hpp"
 #undef RAYLANES_HANDLE
+#undef RAYLANES_CALLS
 #undef RAYLANES_CALL
 #undef RAYLANES_RECORD
 #undef RAYLANES_OPTIONS
 #undef RAYLANES_NUMBERS
 
 #define RAYLANES_HANDLE raylanes_bvhd
-#define RAYLANES_CALL(name) raylanes_bvhd_##name
+#define RAYLANES_CALLS raylanes_bvhd_calls
+#define RAYLANES_CALL(of_floats, of_doubles) of_doubles
 #define RAYLANES_RECORD(name) raylanes_##name##d
 #define RAYLANES_OPTIONS(name) name##D
 #define RAYLANES_NUMBERS of_doubles
 #include "tree_calls.hpp"
+#include "tree_points.hpp"

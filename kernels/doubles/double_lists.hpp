@@ -11,7 +11,8 @@ namespace {
 struct DoubleList : AllHits<HitStore<double>> {
   using AllHits<HitStore<double>>::ListInOrder;
   const FrameRay* frame = nullptr;
-  float end = 0.0f;  // of the ray in the frame
+  float end = 0.0f;           // of the ray in the frame
+  int beside = never_beside;  // how many registers were undecided
 
   float box_tmax() const { return end; }
   // FrameRay finds that out.
@@ -20,6 +21,8 @@ struct DoubleList : AllHits<HitStore<double>> {
   template <class Filtered>
   bool add_found(const DoubleTreeView& tree, const RayD& ray, const Filtered& filtered, std::uint32_t first) {
     const double before = tmax;
+    if (filtered.undecided != 0) [[unlikely]]
+      ++beside;
     const bool is_done = HitList::add_found(tree, ray, filtered, first);
     if (tmax < before) end = frame->end_of(tmax);
     return is_done;

@@ -93,6 +93,7 @@ class DoubleLeaves {
         Vec3<One>(One(direction_[0]), One(direction_[1]), One(direction_[2])));
     shear_x_ = shear.x.raw, shear_y_ = shear.y.raw;
     bound_anywhere_ = EdgeBounds<One, PrecisionOfDoubles>::bound_within(One(reach(ray, tree.bounds))).raw;
+    is_along_ = has_zero(ray.direction);
   }
 
   template <class Query>
@@ -138,7 +139,9 @@ class DoubleLeaves {
       const auto load = [&](int k) {
         return V::load((k % 3 == 0 ? x : k % 3 == 1 ? y : z) + k / 3 * 3 * rows + at);
       };
-      const std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
+      std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
+      if (is_along_ && query.beside > never_beside + few_beside) [[unlikely]]
+        occupied &= ~lanes_beside<V>(load);
       if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
                                              first + static_cast<std::uint32_t>(at), query, counters))
         return true;
@@ -146,10 +149,37 @@ class DoubleLeaves {
     return false;
   }
 
+  // After so many triangles beside the ray each register is asked first whether it has others.
+  static constexpr int few_beside = 4;
+  // As AlongAxes says: the lanes whose triangles are missed, none of them at the origin.
+  template <class V, class Load>
+  std::uint32_t lanes_beside(const Load& load) const {
+    std::uint32_t flat = 0, apart = 0, beside = 0;
+    for (int k = 0; k < 3; ++k) {
+      const V corner[3] = {load(k), load(3 + k), load(6 + k)}, at(origin_[k]);
+      const auto are = [&](const auto& holds) {
+        return bits(holds(corner[0]) & holds(corner[1]) & holds(corner[2]));
+      };
+      const std::uint32_t at_one_side = are([&](V x) { return x < at; }) | are([&](V x) { return x > at; });
+      apart |= at_one_side;
+      if (in_order(direction_[k]) != 0) continue;
+      beside |= at_one_side, flat |= are([&](V x) { return are_same(x, at); });
+    }
+    return beside | (flat & apart);
+  }
+  // By bits where a mode takes subnormal numbers for zeros: equal ones have the same exponent.
+  template <class V>
+  static MaskOf<V> are_same(V a, V b) {
+    using Words = Lanes<std::uint64_t, lanes_of<V>>;
+    const Words one(std::bit_cast<std::uint64_t>(1.0));
+    return (a == b) & (as<double>((as<std::uint64_t>(a) ^ as<std::uint64_t>(b)) | one) == V(1.0));
+  }
+
   const DoubleTreeView& tree_;
   const RayD& ray_;
   SharedAxes axes_;
   double begin_;
+  bool is_along_;
   std::size_t row_[3];  // of the axes in a corner's rows
   double origin_[3], direction_[3], shear_x_, shear_y_, bound_anywhere_;
 };
