@@ -208,8 +208,9 @@ class RayDoor<TriangleTree> {
   template <class Answer>
   FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
                                 const TraceOptions& options) const {
-    const FewRays few(rays, answers, count, options, is_quick() ? batch_size_of(*ready_) : 0);
-    return few && few.may_be_packet() ? FewRays<Ray, Answer>() : few;
+    FewRays few(rays, answers, count, options, is_quick() ? batch_size_of(*ready_) : 0);
+    if (few && few.may_be_packet()) few = {};
+    return few;
   }
   [[gnu::cold, gnu::noinline]] Hit closest_by(const Ray& ray, const TraceOptions& options) const {
     Hit hit;

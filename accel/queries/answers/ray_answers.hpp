@@ -25,9 +25,10 @@ namespace raylanes {
 template <class Tree>
 class RayDoor;
 
+// A batch of few rays, if it is to go as a loop of calls. Inline, which saves a batch of one 32 instructions.
 template <class Door, class AnyRay, class Answer, class Options>
-bool answer_few(const Door& door, const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count,
-                const Options& options) {
+[[gnu::always_inline]] inline bool answer_few(const Door& door, const RayRecords<AnyRay>& rays,
+                                              Answer* answers, std::size_t count, const Options& options) {
   if constexpr (requires { door.kernels(options, 1); }) {
     const FewRays<AnyRay, Answer> few = door.few_rays(rays, answers, count, options);
     if (!few) return false;

@@ -173,9 +173,9 @@ class RayDoor<Scene> {
   FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
                                 const TraceOptions& options) const {
     const CommonTree* const tree = quick_tree(parts_, options.mask);
-    const FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
-    const bool is_batch = few && (tree == nullptr ? parts_.has_others() : few.may_be_packet());
-    return is_batch ? FewRays<Ray, Answer>() : few;
+    FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
+    if (few && (tree == nullptr ? parts_.has_others() : few.may_be_packet())) few = {};
+    return few;
   }
   [[gnu::cold, gnu::noinline]] SceneHit closest_by(const Ray& ray, const TraceOptions& options) const {
     require_skip(name, options.skip, 1);
