@@ -141,7 +141,7 @@ class DoubleLeaves {
       };
       std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
       if (is_along_ && query.beside > never_beside + few_beside) [[unlikely]]
-        occupied &= ~lanes_beside<V>(load);
+        occupied &= ~lanes_beside<V>({x + at, y + at, z + at}, 3 * rows);
       if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
                                              first + static_cast<std::uint32_t>(at), query, counters))
         return true;
@@ -151,19 +151,19 @@ class DoubleLeaves {
 
   // After so many triangles beside the ray each register is asked first whether it has others.
   static constexpr int few_beside = 4;
-  // As AlongAxes says: the lanes whose triangles are missed, none of them at the origin.
-  template <class V, class Load>
-  std::uint32_t lanes_beside(const Load& load) const {
+  // As AlongAxes says: the lanes whose triangles are missed, none of them at the origin. axis[k] are the numbers of v0,
+  // those of v1 and v2 are `row` and two of them behind.
+  template <class V>
+  [[gnu::noinline]] std::uint32_t lanes_beside(const double* const (&axis)[3], int row) const {
     std::uint32_t flat = 0, apart = 0, beside = 0;
     for (int k = 0; k < 3; ++k) {
-      const V corner[3] = {load(k), load(3 + k), load(6 + k)}, at(origin_[k]);
-      const auto are = [&](const auto& holds) {
-        return bits(holds(corner[0]) & holds(corner[1]) & holds(corner[2]));
-      };
-      const std::uint32_t at_one_side = are([&](V x) { return x < at; }) | are([&](V x) { return x > at; });
+      const V at(origin_[k]), v0 = V::load(axis[k]), v1 = V::load(axis[k] + row),
+                              v2 = V::load(axis[k] + 2 * row);
+      const std::uint32_t at_one_side =
+          bits((v0 < at) & (v1 < at) & (v2 < at)) | bits((v0 > at) & (v1 > at) & (v2 > at));
       apart |= at_one_side;
       if (in_order(direction_[k]) != 0) continue;
-      beside |= at_one_side, flat |= are([&](V x) { return are_same(x, at); });
+      beside |= at_one_side, flat |= bits(are_same(v0, at) & are_same(v1, at) & are_same(v2, at));
     }
     return beside | (flat & apart);
   }

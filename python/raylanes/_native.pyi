@@ -15,6 +15,7 @@ Bits = NDArray[np.uint8] | None
 Filter = Callable[[Array, Array], Array] | None
 
 __version__: str
+how_names: tuple[str, ...]
 
 def paths() -> list[tuple[str, str, str, int, bool]]: ...
 def active_path() -> str: ...
