@@ -151,8 +151,8 @@ class DoubleLeaves {
 
   // After so many triangles beside the ray each register is asked first whether it has others.
   static constexpr int few_beside = 4;
-  // As AlongAxes says: the lanes whose triangles are missed, none of them at the origin. axis[k] are the numbers of v0,
-  // those of v1 and v2 are `row` and two of them behind.
+  // As AlongAxes says: the lanes whose triangles are missed, none of them at the origin. axis[k] has the numbers of v0;
+  // v1 is one `row` behind, v2 two.
   template <class V>
   [[gnu::noinline]] std::uint32_t lanes_beside(const double* const (&axis)[3], int row) const {
     std::uint32_t flat = 0, apart = 0, beside = 0;
