@@ -64,16 +64,24 @@ void Meshes::copy(const Geometry& geometry, std::uint32_t part) {
   const BufferView* index = geometry.find(is_grid ? RTC_BUFFER_TYPE_GRID : RTC_BUFFER_TYPE_INDEX);
   const BufferView* vertex = geometry.find(RTC_BUFFER_TYPE_VERTEX);
   if (index == nullptr || vertex == nullptr) return;
-  require_allowed(own_vertices_.size() + vertex->count <= 0xffffffffu, "too many vertices in a scene");
-  const auto base = static_cast<std::uint32_t>(own_vertices_.size());
-  for (std::size_t i = 0; i < vertex->count; ++i) {
-    const auto* v = vertex->at<float>(i);
-    own_vertices_.push_back({v[0], v[1], v[2]});
-  }
+  const std::uint32_t base = copied(*vertex);
   if (is_grid)
     copy_grids(*index, *vertex, part, base);
   else
     copy_indices(*index, *vertex, part, base, geometry.type == RTC_GEOMETRY_TYPE_QUAD ? 4 : 3);
+}
+
+std::uint32_t Meshes::copied(const BufferView& vertex) {
+  const auto first = static_cast<std::uint32_t>(own_vertices_.size());
+  Copy& copy = copies_.try_emplace({vertex.data, vertex.stride}, Copy{first, 0}).first->second;
+  if (copy.count >= vertex.count) return copy.base;
+  require_allowed(own_vertices_.size() + vertex.count <= 0xffffffffu, "too many vertices in a scene");
+  copy = {first, vertex.count};
+  for (std::size_t i = 0; i < vertex.count; ++i) {
+    const auto* v = vertex.at<float>(i);
+    own_vertices_.push_back({v[0], v[1], v[2]});
+  }
+  return first;
 }
 
 void Meshes::copy_indices(const BufferView& index, const BufferView& vertex, std::uint32_t part,

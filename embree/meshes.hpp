@@ -1,6 +1,8 @@
 // The triangles of all meshes of a scene as one mesh.
 #pragma once
 
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "scene.hpp"
@@ -27,10 +29,17 @@ struct Meshes {
  private:
   bool view(const Geometry& geometry, std::uint32_t part);
   void copy(const Geometry& geometry, std::uint32_t part);
+  // The number of a buffer's first vertex among the own ones: a buffer of many geometries is copied once.
+  std::uint32_t copied(const BufferView& vertex);
   void copy_indices(const BufferView& index, const BufferView& vertex, std::uint32_t part, std::uint32_t base,
                     std::uint32_t corners);
   void copy_grids(const BufferView& grids, const BufferView& vertex, std::uint32_t part, std::uint32_t base);
 
+  struct Copy {
+    std::uint32_t base;
+    std::size_t count;
+  };
+  std::map<std::pair<const void*, std::size_t>, Copy> copies_;  // by address and stride
   std::vector<raylanes::Float3> own_vertices_;
   std::vector<raylanes::Index3> own_indices_;
 };
