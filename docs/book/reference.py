@@ -66,7 +66,7 @@ def headers_of_bases(header):
 
 
 def header_page(header):
-    """The header, and behind it those of its bases: a class's page has all that it can do."""
+    """The header, then those of its bases, so that a class's page has all its calls."""
     page = [f'# <raylanes/{header.name}>', '', *body_of(header, 'line')]
     for base in headers_of_bases(header):
         page += [f'## Inherited, from <raylanes/{base.name}>', '', *body_of(base, base.stem)]

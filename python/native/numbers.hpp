@@ -9,28 +9,12 @@
 
 namespace raylanes::python {
 
-template <class T>
-struct CallTypesOf;
-template <>
-struct CallTypesOf<float> {
-  using Tree = TriangleTree;
-  using Crossing = raylanes::Crossing;
-  using Options = TraceOptions;
-  using ClosestOptions = ClosestPointOptions;
-  using DistanceOptions = SignedDistanceOptions;
-};
-template <>
-struct CallTypesOf<double> {
-  using Tree = BvhD;
-  using Crossing = CrossingD;
-  using Options = TraceOptionsD;
-  using ClosestOptions = ClosestPointOptionsD;
-  using DistanceOptions = SignedDistanceOptionsD;
-};
-
 // The base of all trees with these numbers.
 template <class T>
-using TreeOf = typename CallTypesOf<T>::Tree;
+using TreeOf = std::conditional_t<std::is_same_v<T, double>, BvhD, TriangleTree>;
+// The types of its calls.
+template <class T>
+using CallTypesOf = raylanes::detail::QueryTypes<TreeOf<T>>;
 
 // The numbers of a kind of trees.
 template <class Tree>
