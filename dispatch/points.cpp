@@ -23,7 +23,7 @@ ClosestPoint closest_point(const Float3& point, const TriangleArrays& triangles,
   require_nameable("closest_point", triangles.size, "triangles");
   ClosestPoint closest;
   const QuietFloats quiet;
-  kernels.closest_of_triangles(point, Corners(triangles).array, triangles.size, options.active,
+  kernels.closest_of_triangles(point, CornerArrays(triangles).array, triangles.size, options.active,
                                max_squared(options.max_distance), closest);
   return closest;
 }
@@ -39,7 +39,7 @@ void distances(const Float3& point, const TriangleArrays& triangles, const Point
                         where("u", out.u, triangles.size),
                         where("v", out.v, triangles.size)};
   const QuietFloats quiet;
-  kernels.distances(point, Corners(triangles).array, triangles.size, options.active, to);
+  kernels.distances(point, CornerArrays(triangles).array, triangles.size, options.active, to);
 }
 
 }  // namespace raylanes

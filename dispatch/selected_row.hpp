@@ -32,9 +32,9 @@ inline void require_nameable(const char* call, std::size_t n, const char* primit
 }
 
 // The nine arrays of triangles as kernels want them.
-struct Corners {
+struct CornerArrays {
   const float* array[9];
-  explicit Corners(const TriangleArrays& triangles) {
+  explicit CornerArrays(const TriangleArrays& triangles) {
     for (std::size_t k = 0; k < 9; ++k) array[k] = triangles.corner[k / 3][k % 3];
   }
 };

@@ -59,7 +59,7 @@ void prepare(const TriangleRow& row, const TriangleArrays& triangles, const Tria
              const Float3& direction, std::vector<float>& numbers) {
   float* out[max_triangle_floats];
   for (std::size_t k = 0; k < floats_of(options); ++k) out[k] = numbers.data() + k * triangles.size;
-  row.prepare(Corners(triangles).array, triangles.size, options.active, direction.data(), out);
+  row.prepare(CornerArrays(triangles).array, triangles.size, options.active, direction.data(), out);
 }
 
 // One pointer per number of prepared triangles.
@@ -93,7 +93,7 @@ Hit closest_hit(const Ray& ray, const TriangleArrays& triangles, const TriangleO
     row.closest_of_triangles(ray, arrays, triangles.size, options.active, nearest);
   };
   if (reads_corners(options.test))
-    closest_of(Corners(triangles).array);
+    closest_of(CornerArrays(triangles).array);
   else
     closest_of(PreparedForCall("closest_hit", row, triangles, options, ray.direction).pointers.array);
   return nearest;
@@ -108,7 +108,7 @@ void hit_mask(const Ray& ray, const TriangleArrays& triangles, std::span<std::ui
     row.any_of_triangles(ray, arrays, triangles.size, options.active, bits.data());
   };
   if (reads_corners(options.test))
-    any_of(Corners(triangles).array);
+    any_of(CornerArrays(triangles).array);
   else
     any_of(PreparedForCall("hit_mask", row, triangles, options, ray.direction).pointers.array);
 }

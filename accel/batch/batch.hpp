@@ -170,7 +170,7 @@ struct RayCall {
   void* scratch;  // aligned to 64
 };
 
-// Copies of the hits behind which the rays of a call look, in its scratch: hits may lie where answers go.
+// Copies of the hits after which the rays of a call look, in its scratch: hits may lie where answers go.
 template <class Answer, class AnyRay, class AnyHit>
 const AnyHit* copied_hits(const AfterRecords<AnyHit>& after, const RayCall<Answer, AnyRay>& call) {
   auto* const last = static_cast<AnyHit*>(call.scratch);

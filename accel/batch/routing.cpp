@@ -98,7 +98,7 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
 }
 // The loop of calls with one ray, which has less to do for each than a batch of single rays.
 void run_calls(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  const ChosenCallRow* const chosen = choice.chosen;
+  const RuledCallRow* const chosen = choice.chosen;
   const CallRow* const call = choice.call;
   if (chosen == nullptr && call == nullptr) return run(tree, *choice.single, batch);
   for (std::size_t i = 0; i < batch.size; ++i) {

@@ -22,14 +22,14 @@ std::vector<std::uint32_t> left_out_of(std::size_t triangles, const Array<Refere
   if (references.size() == triangles) return left_out;
   left_out.reserve(triangles - references.size());
   std::uint32_t next = 0;
-  const auto leave_out_before = [&](std::uint32_t end) {
+  const auto drop_before = [&](std::uint32_t end) {
     for (; next < end; ++next) left_out.push_back(next);
   };
   for (std::size_t i = 0; i < references.size(); ++i) {
-    leave_out_before(references[i].primitive());
+    drop_before(references[i].primitive());
     ++next;
   }
-  leave_out_before(static_cast<std::uint32_t>(triangles));
+  drop_before(static_cast<std::uint32_t>(triangles));
   return left_out;
 }
 

@@ -3,7 +3,7 @@
 #include "../batch/few_rays.hpp"
 #include "../batch/routing.hpp"
 #include "../batch/shared_points.hpp"
-#include "../queries/next.hpp"
+#include "../queries/after.hpp"
 #include "bvh_d_arrays.hpp"
 
 namespace raylanes {
@@ -17,14 +17,14 @@ constexpr std::size_t min_streamed_rays = 4096;
 // alone finds that sooner.
 bool should_stream(const DoubleTreeView& tree, std::span<const RayD> rays, bool may_fly, bool is_closest) {
   if (rays.size() < min_streamed_rays) return false;
-  const bool are_sooner_alone =
+  const bool are_sooner_singles =
       (may_fly && tree.tree.rays_wait) || (is_closest && begin_outside(rays, tree.bounds));
-  return !are_sooner_alone || are_coherent(rays, tree.bounds);
+  return !are_sooner_singles || are_coherent(rays, tree.bounds);
 }
 
 // Parts of fewer rays than streams take are small.
 BatchPlan plan_of(const TraceOptionsD& options, std::size_t rays) {
-  if (rays < min_streamed_rays) return plan_of_next(options.threads, nullptr, options.progress);
+  if (rays < min_streamed_rays) return plan_of_singles(options.threads, nullptr, options.progress);
   BatchPlan plan{options.threads, nullptr};
   plan.progress = options.progress;
   return plan;
@@ -104,22 +104,22 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, co
   const TraceOptionsD& options = checked.options;
   const DoubleRayKernels& kernels = checked_kernels(options);
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
-  const bool looks_behind = options.after.first != nullptr;
-  const auto batch_of = [&](const RayCall<HitD, RayD>& call, const HitD* last) {
+  const bool has_after = options.after.first != nullptr;
+  const auto batch_of = [&](const RayCall<HitD, RayD>& call, const HitD* after) {
     DoubleBatch batch;
     batch.rays = call.rays, batch.size = call.size, batch.hits = call.answers;
-    batch.facing = options.facing, batch.skip = call.skip, batch.after = last, batch.scratch = call.scratch;
+    batch.facing = options.facing, batch.skip = call.skip, batch.after = after, batch.scratch = call.scratch;
     return batch;
   };
-  if (rays.size() >= min_flying_batch && takes_all(options) && !looks_behind)
+  if (rays.size() >= min_flying_batch && takes_all(options) && !has_after)
     return over_calls(
         plan_of(options, rays.size()), rays, HitSink<HitD>{hits},
         [&](std::size_t n) { return scratch_bytes(kernels, n); },
         [&](const RayCall<HitD, RayD>& call) { run_together(rows, tree, batch_of(call, nullptr), nullptr); });
-  trace_behind(plan_of(options, 0), rays, hits, options.after,
-               [&](const RayCall<HitD, RayD>& call, const HitD* last) {
-                 kernels.closest(tree, batch_of(call, last));
-               });
+  trace_calls_after(plan_of(options, 0), rays, hits, options.after,
+                    [&](const RayCall<HitD, RayD>& call, const HitD* after) {
+                      kernels.closest(tree, batch_of(call, after));
+                    });
 }
 
 void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given,

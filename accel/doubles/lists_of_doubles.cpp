@@ -7,8 +7,8 @@ namespace raylanes {
 
 template <>
 struct SurfaceDoor<BvhD> : SurfaceOfTree<double, DoubleTreeView> {
-  explicit SurfaceDoor(const BvhD& tree) : SurfaceOfTree(view_of(TreeOf::arrays(tree))) {}
-  static void require_passages(const TraceOptionsD&) {}
+  explicit SurfaceDoor(const BvhD& tree) : SurfaceOfTree(view_of(TreeAccess::arrays(tree))) {}
+  static void require_closest_crossing(const TraceOptionsD&) {}
 };
 template class SurfaceQueries<BvhD>;
 

@@ -9,7 +9,7 @@ namespace raylanes {
 template <>
 class PointDoor<BvhD> {
  public:
-  explicit PointDoor(const BvhD& tree) : tree_(TreeOf::arrays(tree)) {}
+  explicit PointDoor(const BvhD& tree) : tree_(TreeAccess::arrays(tree)) {}
 
   ClosestPointD closest(const Double3& point, const ClosestPointOptionsD& options) const {
     const DoubleRayKernels& kernels = checked_kernels(options);

@@ -36,7 +36,7 @@ class RayDoor<BvhD> {
  public:
   static constexpr const char* name = "trace";
 
-  explicit RayDoor(const BvhD& tree) : tree_(TreeOf::arrays(tree)) {}
+  explicit RayDoor(const BvhD& tree) : tree_(TreeAccess::arrays(tree)) {}
 
   HitD closest(const RayD& ray) const {
     return is_quick() ? in_use().closest_of_ray(tree_->ready, ray, Facing::any, no_primitive)
@@ -61,9 +61,9 @@ class RayDoor<BvhD> {
     HitD hit;
     DoubleBatch batch;
     batch.hits = &hit;
-    HitD last;
+    HitD after;
     require_after(name, options.after, 1);
-    if (options.after.first != nullptr) last = options.after[0], batch.after = &last;
+    if (options.after.first != nullptr) after = options.after[0], batch.after = &after;
     trace_one(ray, options, batch, &DoubleRayKernels::closest);
     return hit;
   }

@@ -54,7 +54,7 @@ void require_kind(const Magic& magic, FileKind kind) {
   refuse_file("it does not begin as one does");
 }
 
-// The file's first bytes. The checksum is of all that comes behind it, to the end of the tree.
+// The file's first bytes. The checksum is of all that comes after it, to the end of the tree.
 struct Start {
   Magic magic;
   std::uint32_t byte_order, version;

@@ -29,7 +29,7 @@ std::vector<Corners> triangles_of(const Leaves& leaves) {
 template <>
 class PointDoor<TriangleTree> {
  public:
-  explicit PointDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeOf::ready(tree)) {}
+  explicit PointDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeAccess::ready(tree)) {}
 
   ClosestPoint closest(const Float3& point, const ClosestPointOptions& options) const {
     const bool is_usual =
@@ -44,11 +44,11 @@ class PointDoor<TriangleTree> {
                const ClosestPointOptions& options) const {
     const PointKernels& kernels = checked_kernels(options);
     const auto row = options.counters == nullptr ? kernels.closest_in_tree : kernels.counted;
-    const TreeView view = TreeOf::traced(tree_).view;
+    const TreeView view = TreeAccess::traced(tree_).view;
     answer_closest_points<float>(view, view.bounds, row, points, closest, options, options.counters);
   }
   Surface<float> surface() const {
-    const TracedTree tree = TreeOf::traced(tree_);
+    const TracedTree tree = TreeAccess::traced(tree_);
     const TreeLeaves* const leaves = tree.leaves;
     return {tree.view, tree.has_parts, leaves != nullptr ? &leaves->boundary : nullptr,
             [leaves] { return triangles_of(leaves->corners); }};
@@ -64,7 +64,7 @@ class PointDoor<TriangleTree> {
   [[gnu::cold, gnu::noinline]] ClosestPoint closest_by(const Float3& point,
                                                        const ClosestPointOptions& options) const {
     const PointKernels& kernels = checked_kernels(options);
-    const TreeView view = TreeOf::traced(tree_).view;
+    const TreeView view = TreeAccess::traced(tree_).view;
     const QuietFloats quiet;
     ClosestPoint closest;
     if (options.counters == nullptr) {

@@ -69,11 +69,11 @@ ListMaker<double> checked_maker(const char* call, ListKind kind, const DoubleTre
 }
 
 // Measured sizes: rays of a call as single rays, rays of a call by streams, the number of rays from which streams pay,
-// and rays of a sample. Up to max_alone hits a ray go as single rays, because `max_count` shortens their search.
+// and rays of a sample. Up to max_as_singles hits a ray go as single rays, because `max_count` shortens their search.
 // hits_of_a_ray is the capacity at first, which grows when needed. If streams outgrow their memory, lists of
 // rays_of_a_sample rays tell how many rays fit.
-inline constexpr std::size_t rays_alone = 1024, rays_together = 65536, min_rays_together = 1024,
-                             rays_of_a_sample = 4096, max_alone = 64, hits_of_a_ray = 8;
+inline constexpr std::size_t rays_as_singles = 1024, rays_together = 65536, min_rays_together = 1024,
+                             rays_of_a_sample = 4096, max_as_singles = 64, hits_of_a_ray = 8;
 
 // The memory for kernels' lists and their scratch. Streams have at most 32 MB of entries, and fewer rays a call if that
 // is too little. Only a single ray that needs it has more.
@@ -90,7 +90,7 @@ class ListRoom {
   }
   // The maximum for one call.
   static std::size_t rays_of_a_call(const ListMaker<T>& maker, std::size_t rays) {
-    return std::min(rays, may_go_together(maker) ? rays_together : rays_alone);
+    return std::min(rays, may_go_together(maker) ? rays_together : rays_as_singles);
   }
   // Whether so many rays of a call are traced by streams.
   static bool goes_together(const ListMaker<T>& maker, std::size_t rays) {
@@ -152,7 +152,8 @@ class ListRoom {
   static bool go_along_axes(const ListMaker<T>& maker) { return maker.stop != ListStop::never; }
   static bool may_go_together(const ListMaker<T>& maker) {
     if constexpr (is_float<T>)
-      return !go_along_axes(maker) && maker.max_count > max_alone && maker.kernels.list_together != nullptr;
+      return !go_along_axes(maker) && maker.max_count > max_as_singles &&
+             maker.kernels.list_together != nullptr;
     return false;
   }
   void take() {
@@ -205,7 +206,7 @@ template <class T>
 BatchPlan plan_of(const ListMaker<T>& maker) {
   return {.threads = maker.threads,
           .counters = maker.counters,
-          .max_call = rays_alone,
+          .max_call = rays_as_singles,
           .min_part = 256,
           .parts_per_thread = 8,
           .max_part = rays_together,

@@ -88,7 +88,7 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
   return choice;
 }
 // The rows of triangles that the caller chooses.
-TraversalChoice choice_of_chosen(const TraceOptions& options) {
+TraversalChoice choice_by_rule(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument(
         options.facing == Facing::any
@@ -96,8 +96,8 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
             : "trace: facing " + std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
                   " takes the test exact; with other tests only facing any is allowed");
   const QueryKernels& rows = checked_queries<float>("trace", options);
-  const TraversalRow* const single = &rows.chosen_single;
-  const TraversalRow* const together = rows.chosen_stream.closest != nullptr ? &rows.chosen_stream : single;
+  const TraversalRow* const single = &rows.ruled_single;
+  const TraversalRow* const together = rows.ruled_stream.closest != nullptr ? &rows.ruled_stream : single;
   const TraversalRows& packets =
       kernels_of(checked_path(options.path)).traversal.mode[static_cast<std::size_t>(TraversalMode::packet)];
   constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
@@ -105,13 +105,13 @@ TraversalChoice choice_of_chosen(const TraceOptions& options) {
   TraversalChoice choice{single,         counts ? together : &packets.row[exact][0],
                          together,       options.mode,
                          options.hint,   options.counters,
-                         options.facing, counts ? nullptr : &rows.chosen_call};
+                         options.facing, counts ? nullptr : &rows.ruled_call};
   set_what_tells(choice, options);
   return choice;
 }
 
 // Whether a call with one ray sets no more than facing, skip, after, test, grade, path, and what is for batches.
-bool is_usual_but_chosen(const TraceOptions& options) {
+bool is_usual_but_for_rule(const TraceOptions& options) {
   return options.mode == TraversalMode::automatic &&
          static_cast<std::size_t>(options.hint) < batch_hint_names.size() && options.threads >= 0 &&
          options.counters == nullptr && static_cast<std::size_t>(options.grade) < grade_names.size();
@@ -120,7 +120,7 @@ bool is_usual_but_chosen(const TraceOptions& options) {
 
 const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
-  const bool is_usual = is_usual_but_chosen(options) && options.facing == Facing::any &&
+  const bool is_usual = is_usual_but_for_rule(options) && options.facing == Facing::any &&
                         options.after.first == nullptr && options.skip.first == nullptr &&
                         test < std::size(triangle_tests);
   if (!is_usual) return nullptr;
@@ -129,13 +129,13 @@ const CallRow* usual_row(const TraceOptions& options) {
   return row.closest != nullptr ? &row : nullptr;
 }
 bool is_usual_kept(const TraceOptions& options, std::size_t rays) {
-  return is_usual_but_chosen(options) && options.test == TriangleTest::exact &&
+  return is_usual_but_for_rule(options) && options.test == TriangleTest::exact &&
          static_cast<std::size_t>(options.facing) < facing_names.size() &&
          options.skip.count == (options.skip.first != nullptr ? rays : 0);
 }
-const ChosenCallRow* chosen_row(const TraceOptions& options, std::size_t rays) {
+const RuledCallRow* ruled_row(const TraceOptions& options, std::size_t rays) {
   return is_usual_kept(options, rays) && options.after.first == nullptr
-             ? &kernels_of(checked_path(options.path)).queries.plain.chosen_call
+             ? &kernels_of(checked_path(options.path)).queries.plain.ruled_call
              : nullptr;
 }
 const CallRow& default_row() {
@@ -154,7 +154,7 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "facing", options.facing, facing_names.size());
   Traversal traversal{tree.view, options.facing == Facing::any && options.skip.first == nullptr
                                      ? choice_of_both_sides(tree.kind, options, test, grade)
-                                     : choice_of_chosen(options)};
+                                     : choice_by_rule(options)};
   traversal.choice.progress = options.progress;
   traversal.choice.fixed_parts = options.test != TriangleTest::exact && options.mode != TraversalMode::single;
   return traversal;
@@ -196,7 +196,7 @@ class RayDoor<TriangleTree> {
  public:
   static constexpr const char* name = "trace";
 
-  explicit RayDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeOf::ready(tree)) {}
+  explicit RayDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeAccess::ready(tree)) {}
 
   Hit closest(const Ray& ray) const {
     return is_quick() ? default_row().closest(*ready_, ray) : closest_by(ray, {});
@@ -228,21 +228,21 @@ class RayDoor<TriangleTree> {
   }
   void trace(const RaySource& rays, const HitView& hits, const TraceOptions& options) const {
     const CheckedCall call(name, rays, hits, options);
-    const TracedTree tree = TreeOf::traced(tree_);
+    const TracedTree tree = TreeAccess::traced(tree_);
     const Traversal traversal = checked_traversal(tree, call.options);
-    if (options.after.first != nullptr) return trace_next(tree, call.rays, hits, call.options);
+    if (options.after.first != nullptr) return trace_after(tree, call.rays, hits, call.options);
     raylanes::trace(traversal.tree, traversal.choice, call.rays, HitSink<Hit>{hits}, options.threads);
   }
   void trace(const RaySource& rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {
     const CheckedCall call(name, rays, occluded, options);
-    Traversal traversal = checked_traversal(TreeOf::traced(tree_), call.options);
+    Traversal traversal = checked_traversal(TreeAccess::traced(tree_), call.options);
     traversal.choice.facing = rays.sides(options.facing);
     raylanes::trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded},
                     options.threads);
   }
 
   static void require_order(const TraceOptions& options) { require_exact(options); }
-  TreeLists<float, TracedTree> lists(const TraceOptions&) const { return {TreeOf::traced(tree_)}; }
+  TreeLists<float, TracedTree> lists(const TraceOptions&) const { return {TreeAccess::traced(tree_)}; }
   KeptCalls<TreeView, float> kept_at_once() const {
     return {is_quick() ? &kernels_of(path_in_use()).queries.plain.kept : nullptr, ready_};
   }
@@ -278,12 +278,12 @@ class RayDoor<TriangleTree> {
   bool is_quick() const { return ready_ != nullptr && !QuietFloats::are_wanted(); }
   // The tree, if options are right. Usual ones need no rows of other kernels.
   TreeView tree_by(const TraceOptions& options) const {
-    const TracedTree tree = TreeOf::traced(tree_);
+    const TracedTree tree = TreeAccess::traced(tree_);
     return is_usual_kept(options) ? tree.view : checked_traversal(tree, options).tree;
   }
   void trace_one(const Ray& ray, const TraceOptions& options, TraceBatch& batch,
                  decltype(&TraversalRow::any) row) const {
-    const TracedTree tree = TreeOf::traced(tree_);
+    const TracedTree tree = TreeAccess::traced(tree_);
     const Traversal traversal = checked_traversal(tree, options);
     const QuietFloats quiet;
     const std::uint32_t skipped = skip_of_one(name, options);
@@ -291,8 +291,8 @@ class RayDoor<TriangleTree> {
     if (batch.hits != nullptr && options.after.first != nullptr) {
       TraceOptions unreported = options;
       unreported.progress = nullptr;
-      return trace_next(tree, {.records = RayView(&ray, 1), .skip = options.skip}, HitView(batch.hits, 1),
-                        unreported);
+      return trace_after(tree, {.records = RayView(&ray, 1), .skip = options.skip}, HitView(batch.hits, 1),
+                         unreported);
     }
     batch.rays = &ray, batch.size = 1, batch.counters = options.counters;
     batch.facing = options.facing, batch.skip = &skipped;

@@ -135,12 +135,12 @@ class PointPlaces {
 
   // The places of points from `begin` to `end`; of inactive ones anything.
   std::span<const PointPlace> find(std::size_t begin, std::size_t end) {
-    begin_ = begin, lines_.clear(), alone_.clear(), places_.resize(end - begin);
+    begin_ = begin, lines_.clear(), singles_.clear(), places_.resize(end - begin);
     share_out(begin, end);
     by_lines();
-    each_list<ListEntryOf<T>>(maker_, RaysOfPoints<T>{points_, begin, places_, alone_}, 0, alone_.size(),
+    each_list<ListEntryOf<T>>(maker_, RaysOfPoints<T>{points_, begin, places_, singles_}, 0, singles_.size(),
                               counters_, [&](std::size_t i, std::span<ListEntryOf<T>> list) {
-                                PointPlace& place = places_[alone_[i] - begin];
+                                PointPlace& place = places_[singles_[i] - begin];
                                 place = place_by_own_ray<T>(list, place.side);
                               });
     if (counts_on_) count_on(begin, end);
@@ -174,16 +174,16 @@ class PointPlaces {
       if (count >= min_in_line && rays_.serve(axis))
         lines_.push_back({first, last + 1, axis});
       else
-        for (std::size_t k = first; k <= last; ++k) go_alone(k, axis);
+        for (std::size_t k = first; k <= last; ++k) go_singly(k, axis);
     }
   }
   // Its ray goes along the axis of its line, or towards the side of the box that is nearest.
-  void go_alone(std::size_t i, std::size_t axis) {
+  void go_singly(std::size_t i, std::size_t axis) {
     if (!points_.takes_part(i)) return;
     const NearestSide to(points_.view[i], points_.bounds);
     const std::size_t side = !to.inside ? outside_box : axis != no_axis ? side_along(axis) : to.side;
     places_[i - begin_] = {0, static_cast<std::uint16_t>(side), false};
-    if (to.inside) alone_.push_back(i);
+    if (to.inside) singles_.push_back(i);
   }
 
   // Points that may be at a crossing go alone, and all of a line that meets what floats do not decide.
@@ -195,7 +195,7 @@ class PointPlaces {
         maker, rays, 0, lines_.size(), counters_, [&](std::size_t i, std::span<ListEntryOf<T>> list) {
           const PointsInLine line = lines_[i];
           if (!list.empty() && list.back().side == 0) {
-            for (std::size_t k = line.begin; k < line.end; ++k) go_alone(k, line.axis);
+            for (std::size_t k = line.begin; k < line.end; ++k) go_singly(k, line.axis);
             return;
           }
           find_stretches<T>(in_order(list), rays_.begin(line.axis), points_.bounds.lo[line.axis],
@@ -232,7 +232,7 @@ class PointPlaces {
         here = &*std::upper_bound(stretches_.begin(), stretches_.end() - 1, x,
                                   [](T at, const Stretch<T>& stretch) { return at < stretch.before; });
         if (!(x > here->after && x < here->before)) {
-          go_alone(k, line.axis);
+          go_singly(k, line.axis);
           continue;
         }
       }
@@ -263,7 +263,7 @@ class PointPlaces {
   std::size_t begin_ = 0;
   std::vector<PointPlace> places_;
   std::vector<PointsInLine> lines_;
-  std::vector<std::size_t> alone_, on_;
+  std::vector<std::size_t> singles_, on_;
   std::vector<Stretch<T>> stretches_;
 };
 

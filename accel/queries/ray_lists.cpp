@@ -33,8 +33,8 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
 
 template <>
 struct SurfaceDoor<TriangleTree> : SurfaceOfTree<float, TracedTree> {
-  explicit SurfaceDoor(const TriangleTree& tree) : SurfaceOfTree(TreeOf::traced(tree)) {}
-  static void require_passages(const TraceOptions& options) { require_exact(options); }
+  explicit SurfaceDoor(const TriangleTree& tree) : SurfaceOfTree(TreeAccess::traced(tree)) {}
+  static void require_closest_crossing(const TraceOptions& options) { require_exact(options); }
 };
 template class SurfaceQueries<TriangleTree>;
 

@@ -25,10 +25,10 @@ void append_stretches(std::span<const AnyCrossing> crossings, const RayOf<T>& ra
     std::int32_t sides = 0;
     for (; at != crossings.end() && at->t == first->t; ++at) sides += at->side;
     if (sides == 0) continue;
-    const auto passage =
+    const auto crossing =
         std::find_if(first, at, [&](const AnyCrossing& c) { return (c.side > 0) == (sides > 0); });
-    finish(first->t, passage->primitive);
-    last = {first->t, 0, passage->primitive, no_primitive, last.winding - sides};
+    finish(first->t, crossing->primitive);
+    last = {first->t, 0, crossing->primitive, no_primitive, last.winding - sides};
   }
   finish(ray.tmax, no_primitive);
 }

@@ -27,7 +27,7 @@ struct SceneParts;
 struct SphereTreeArrays;
 
 // The inside of trees.
-struct TreeOf {
+struct TreeAccess {
   static TracedTree traced(const TriangleTree& tree) { return tree.traced(); }
   static const BvhArrays* arrays(const Bvh& bvh) { return bvh.tree_.get(); }  // null: of an empty mesh
   static const BvhDArrays* arrays(const BvhD& bvh) { return bvh.tree_.get(); }
@@ -51,15 +51,15 @@ struct Traversal {
 const CallRow& default_row();
 const CallRow* usual_row(const TraceOptions& options);
 // The row for one ray at a time that sets facing and skip besides, of so many rays, if at all; null if there is none.
-const ChosenCallRow* chosen_row(const TraceOptions& options, std::size_t rays = 1);
+const RuledCallRow* ruled_row(const TraceOptions& options, std::size_t rays = 1);
 // One of these for one ray at a time, of so many rays; false if options ask for more.
 struct RowsOfCalls {
   const CallRow* usual = nullptr;
-  const ChosenCallRow* chosen = nullptr;
+  const RuledCallRow* chosen = nullptr;
 
   RowsOfCalls() = default;
   RowsOfCalls(const TraceOptions& options, std::size_t rays)
-      : usual(usual_row(options)), chosen(usual == nullptr ? chosen_row(options, rays) : nullptr) {}
+      : usual(usual_row(options)), chosen(usual == nullptr ? ruled_row(options, rays) : nullptr) {}
   explicit operator bool() const { return usual != nullptr || chosen != nullptr; }
   // skipped() is the primitive that is not there for the ray.
   template <class Skipped>
@@ -79,8 +79,8 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
 
 // Throws std::invalid_argument for another test than exact.
 void require_exact(const TraceOptions& options);
-// Finds the hits behind options.after, as TraceOptions says; there are as many hits as rays.
-void trace_next(const TracedTree& tree, const RaySource& rays, const HitView& hits,
-                const TraceOptions& options);
+// Finds the hits after options.after, as TraceOptions says; there are as many hits as rays.
+void trace_after(const TracedTree& tree, const RaySource& rays, const HitView& hits,
+                 const TraceOptions& options);
 
 }  // namespace raylanes

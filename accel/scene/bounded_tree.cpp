@@ -85,17 +85,17 @@ void BoundedTree::occluded(RayView rays, std::span<std::uint8_t> occluded, LeafF
 }
 Hit BoundedTree::closest(const Ray& ray, LeafFunction visit, void* context,
                          const VisitOptions& options) const {
-  return visit_alone<Hit>(
+  return visit_single<Hit>(
       ray, options, tracer_of(tree_.get(), {visit, context}),
       [&](RayView rays, Hit* hit) { closest(rays, HitView(hit, 1), visit, context, for_one_ray(options)); });
 }
 bool BoundedTree::occluded(const Ray& ray, LeafFunction visit, void* context,
                            const VisitOptions& options) const {
-  return visit_alone<std::uint8_t>(ray, options, tracer_of(tree_.get(), {visit, context}),
-                                   [&](RayView rays, std::uint8_t* is_occluded) {
-                                     occluded(rays, std::span(is_occluded, 1), visit, context,
-                                              for_one_ray(options));
-                                   }) != 0;
+  return visit_single<std::uint8_t>(ray, options, tracer_of(tree_.get(), {visit, context}),
+                                    [&](RayView rays, std::uint8_t* is_occluded) {
+                                      occluded(rays, std::span(is_occluded, 1), visit, context,
+                                               for_one_ray(options));
+                                    }) != 0;
 }
 
 std::span<const std::uint32_t> BoundedTree::order() const& noexcept {

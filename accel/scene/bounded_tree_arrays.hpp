@@ -30,7 +30,7 @@ BoundedTreeArrays build_box_tree(const char* what, std::span<const Box> boxes,
                                  const BoundedBuildOptions& options);
 
 // The tmax for hits before or at t, which may be infinite.
-inline float tmax_behind(float t) {
+inline float tmax_after(float t) {
   constexpr float most = std::numeric_limits<float>::max();
   const float behind = float_above(std::max(t, -most));
   return t <= most ? behind : std::numeric_limits<float>::infinity();

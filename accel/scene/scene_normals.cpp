@@ -16,8 +16,8 @@ struct NamedTriangles {
   std::vector<std::uint64_t> places = {};
 
   explicit NamedTriangles(const Bvh* tree) {
-    if (tree == nullptr || TreeOf::traced(*tree).leaves == nullptr) return;
-    leaves = &TreeOf::traced(*tree).leaves->corners;
+    if (tree == nullptr || TreeAccess::traced(*tree).leaves == nullptr) return;
+    leaves = &TreeAccess::traced(*tree).leaves->corners;
     places = leaves->places();
   }
 };

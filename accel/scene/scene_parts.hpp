@@ -111,8 +111,7 @@ struct SceneBatch {
   SceneHit* hits;
   std::uint8_t* occluded;
   detail::RayNumbers numbers = {};  // of the rays in the caller's batch
-  const SceneHit* after =
-      nullptr;  // not null: the first hits behind these are looked for; without geometries
+  const SceneHit* after = nullptr;  // not null: the first hits after these are looked for; without geometries
 };
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
@@ -124,14 +123,14 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options);
 void trace_scene(const SceneQuery& query, const SceneBatch& batch);
 // The same for a batch that has the answers of all instances but those that no kernel walks.
 void trace_others(const SceneQuery& query, const SceneBatch& batch);
-// Finds the hits behind options.after, by a checked query.
-void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
-                const TraceOptions& options);
+// Finds the hits after options.after, by a checked query.
+void trace_after(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
+                 const TraceOptions& options);
 // Throws std::invalid_argument for another test than exact.
 void require_exact_in_scene(const TraceOptions& options);
 // Throws std::invalid_argument if options.after is not of so many hits in scenes, or another test is asked for.
 void require_after_in_scene(const TraceOptions& options, std::size_t rays);
-SceneHit last_hit(const AfterView& after, std::size_t i);
+SceneHit hit_of_after(const AfterView& after, std::size_t i);
 // Throws std::invalid_argument for another test than exact, and if a geometry does not consist of triangles.
 void require_triangles(const Scene& scene, const TraceOptions& options);
 

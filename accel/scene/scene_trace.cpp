@@ -66,7 +66,7 @@ class SceneTracer {
   void visit_instances(const TopLevel& top, bool has_answers) {
     top_ = &top;
     walks_ = top.walked.entries != nullptr && has_only_a_mask();
-    if (walks_ && are_apart(top)) return walk_alone(top);
+    if (walks_ && are_apart(top)) return walk_singly(top);
     if (has_answers && refers_to_leaf(top.tree.root) && query_.choice.counters == nullptr)
       return visit_few(padded(top));
     const std::size_t bytes = query_.kernels.traversal.scratch_bytes(TraversalMode::stream, batch_.size);
@@ -88,7 +88,7 @@ class SceneTracer {
     const std::uint64_t from = batch_.hits != nullptr ? top.closest_from : top.occluded_from;
     return batch_.size < from && !are_coherent(std::span(batch_.rays, batch_.size), top.tree.bounds);
   }
-  void walk_alone(const TopLevel& top) const {
+  void walk_singly(const TopLevel& top) const {
     const TraversalKernels& kernels = query_.kernels.traversal;
     for (std::size_t i = 0; i < batch_.size; ++i)
       if (batch_.hits != nullptr)
@@ -127,7 +127,7 @@ class SceneTracer {
   // How far each ray goes after the answers so far.
   float* rest_of_rays(float* rest) const {
     for (std::size_t i = 0; i < batch_.size; ++i) {
-      const float end = batch_.hits != nullptr    ? tmax_behind(batch_.hits[i].t)
+      const float end = batch_.hits != nullptr    ? tmax_after(batch_.hits[i].t)
                         : batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()
                                                   : std::numeric_limits<float>::infinity();
       rest[i] = batch_.rays[i].tmax < end ? batch_.rays[i].tmax : end;
@@ -154,7 +154,7 @@ class SceneTracer {
     return (batch_.after != nullptr ? Scratch::bytes_of<Hit>(size) : 0) +
            (skips() ? Scratch::bytes_of<std::uint32_t>(size) : 0);
   }
-  // Sets what rays look behind and what they skip, in the numbers of a tree. Ray k of the part is picked[k] of the
+  // Sets after which hits rays look and what they skip, in the numbers of a tree. Ray k of the part is picked[k] of the
   // batch; null: ray k.
   void set_options(GeometryBatch& part, const MemberNumbers& numbers, const std::uint32_t* picked,
                    Scratch& scratch) const {
@@ -222,7 +222,7 @@ class SceneTracer {
       float end = std::numeric_limits<float>::infinity();
       if (batch_.hits != nullptr) {
         kernels.closest_of_instances(view, ray, query_.mask, batch_.hits[number]);
-        end = tmax_behind(batch_.hits[number].t);
+        end = tmax_after(batch_.hits[number].t);
       } else if (kernels.any_of_instances(view, ray, query_.mask)) {
         batch_.occluded[number] = 1, end = -end;
       }
@@ -283,7 +283,7 @@ class SceneTracer {
       SceneHit& best = batch_.hits[leaf.rays[k]];
       if (!is_before(hit, best)) continue;
       best = hit;
-      leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(hit.t));
+      leaf.tmax[k] = std::min(leaf.tmax[k], tmax_after(hit.t));
     }
   }
   void keep_occluded(const VisitedLeaf& leaf, const GeometryBatch& part) const {

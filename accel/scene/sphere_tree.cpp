@@ -178,7 +178,7 @@ class RayDoor<SphereTree> {
   static constexpr const char* name = "sphere tree";
 
   explicit RayDoor(const SphereTree& tree)
-      : tree_(tree), spheres_(TreeOf::arrays(tree) != nullptr ? *TreeOf::arrays(tree) : no_spheres) {}
+      : tree_(tree), spheres_(TreeAccess::arrays(tree) != nullptr ? *TreeAccess::arrays(tree) : no_spheres) {}
 
   Hit closest(const Ray& ray) const { return closest_by(ray, {}); }
   bool any(const Ray& ray) const { return any_by(ray, {}); }

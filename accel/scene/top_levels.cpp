@@ -130,7 +130,8 @@ void SceneParts::set_trees() noexcept {
   for (Instance& instance : instances) {
     const Geometry& geometry = *geometries[instance.geometry];
     const Bvh* const tree = geometry.has_tree() ? geometry.triangles() : nullptr;
-    instance.tree = tree != nullptr && TreeOf::arrays(*tree) != nullptr ? TreeOf::ready(*tree) : nullptr;
+    instance.tree =
+        tree != nullptr && TreeAccess::arrays(*tree) != nullptr ? TreeAccess::ready(*tree) : nullptr;
   }
 }
 void SceneParts::set_tops(std::vector<TopLevel> made) noexcept {

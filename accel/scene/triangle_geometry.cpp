@@ -16,13 +16,13 @@ namespace {
 
 struct TriangleGeometry : Geometry {
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeOf::traced(*triangles()).view;
+    const TreeView view = TreeAccess::traced(*triangles()).view;
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
     batch.counters = rays.counters, batch.after = rays.after, batch.facing = query.choice.facing;
     batch.skip = rays.skip;
-    if (batch.after != nullptr) return query.queries().next(view, batch);
+    if (batch.after != nullptr) return query.queries().closest_after(view, batch);
     const TraversalRow& single = *query.choice.single;
     if (rays.size == 1) return (batch.hits != nullptr ? single.closest : single.any)(view, batch);
     TraversalChoice choice = query.choice;
@@ -42,18 +42,18 @@ struct TreeGeometry : TriangleGeometry {
   Box bounds() const override { return tree->bounds(); }
   const Bvh* triangles() const override { return tree.get(); }
   std::size_t mesh_triangles() const override {
-    const BvhArrays* const arrays = TreeOf::arrays(*tree);
+    const BvhArrays* const arrays = TreeAccess::arrays(*tree);
     return arrays != nullptr ? arrays->mesh_triangles : 0;
   }
   void put_corners(float* corners) const override {
-    const Leaves& leaves = TreeOf::traced(*tree).leaves->corners;
+    const Leaves& leaves = TreeAccess::traced(*tree).leaves->corners;
     for (const std::uint64_t place : leaves.places()) {
       const Triangle triangle = leaves.triangle(place);
       float* const to = corners + 9 * (place >> 32);
       for (std::size_t k = 0; k < 9; ++k) to[k] = triangle.corner[k / 3][k % 3];
     }
   }
-  BuildOptions build_options() const override { return TreeOf::arrays(*tree)->built_with; }
+  BuildOptions build_options() const override { return TreeAccess::arrays(*tree)->built_with; }
   std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) override;
 
   std::shared_ptr<const Bvh> tree;

@@ -24,7 +24,7 @@ struct Visit {
                 batch.hits, batch.occluded, batch.skip, batch.after, batch.instance, batch.numbers});
     if (batch.hits != nullptr)
       for (std::size_t k = 0; k < leaf.count; ++k)
-        leaf.tmax[k] = std::min(leaf.tmax[k], tmax_behind(batch.hits[leaf.rays[k]].t));
+        leaf.tmax[k] = std::min(leaf.tmax[k], tmax_after(batch.hits[leaf.rays[k]].t));
     else
       for (std::size_t k = 0; k < leaf.count; ++k)
         if (batch.occluded[leaf.rays[k]] != 0) leaf.tmax[k] = -std::numeric_limits<float>::infinity();

@@ -26,7 +26,7 @@ struct GeometryBatch {
   bool may_be_packets = true;
   detail::RayNumbers numbers = {};      // of the rays in the caller's batch
   std::uint32_t instance = no_part;     // see LeafVisit
-  const Hit* after = nullptr;           // not null: the first hits behind these are looked for
+  const Hit* after = nullptr;           // not null: the first hits after these are looked for
   const std::uint32_t* skip = nullptr;  // not null: for each ray the primitive that is not there for it
 };
 
@@ -43,18 +43,18 @@ void visit_parts(const char* what, const RaySource& rays, const Sink& sink, cons
   if (options.counters != nullptr) require_counters(what, kernels.has_counters());
   constexpr std::size_t most = 32768;  // a test's hits stay near
   constexpr bool finds_hits = std::is_same_v<typename Sink::Answer, Hit>;
-  const bool looks_behind = finds_hits && options.after.first != nullptr;
+  const bool has_after = finds_hits && options.after.first != nullptr;
   over_calls(
       {.threads = options.threads,
        .counters = options.counters,
        .max_call = most,
        .max_part = most,
        .progress = options.progress},
-      rays, sink, [&](std::size_t n) { return looks_behind ? n * sizeof(Hit) : 0; },
+      rays, sink, [&](std::size_t n) { return has_after ? n * sizeof(Hit) : 0; },
       [&](const RayCall<typename Sink::Answer>& call) {
         GeometryBatch batch{call.rays, call.size, nullptr, nullptr, nullptr, call.counters};
         batch.numbers = call.indices, batch.skip = call.skip;
-        if (looks_behind) batch.after = copied_hits(options.after, call);
+        if (has_after) batch.after = copied_hits(options.after, call);
         set_answers(batch, call.answers);
         trace(kernels, batch);
       });
@@ -74,7 +74,7 @@ void visit_occluded(const char* what, const RaySource& rays, std::span<std::uint
 }
 // The answer of a call with one ray, without the ways of batches where its options ask for none.
 template <class Answer, class Trace, class Visit>
-Answer visit_alone(const Ray& ray, const VisitOptions& options, const Trace& trace, const Visit& visit) {
+Answer visit_single(const Ray& ray, const VisitOptions& options, const Trace& trace, const Visit& visit) {
   Answer answer{};
   const bool is_usual = options.threads == 1 && options.counters == nullptr &&
                         options.skip.first == nullptr && options.skip.count == 0 &&

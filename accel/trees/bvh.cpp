@@ -8,14 +8,14 @@
 #include "../queries/traced_tree.hpp"
 
 namespace raylanes {
-Bvh TreeOf::copy(const Bvh& bvh) {
+Bvh TreeAccess::copy(const Bvh& bvh) {
   Bvh other;
   if (!bvh.tree_) return other;
   other.tree_ = std::make_unique<BvhArrays>(*bvh.tree_);
   other.make_ready();
   return other;
 }
-void TreeOf::strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept {
+void TreeAccess::strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept {
   strike_triangles(*bvh.tree_, box, first, end);
   bvh.make_ready();
 }

@@ -48,7 +48,7 @@ void Bvh::refit(VertexView vertices, IndexView triangles, int threads) {
 Bvh Bvh::refitted(VertexView vertices, IndexView triangles, int threads) const {
   const QuietFloats quiet;
   if (must_build(vertices, triangles, threads)) return built_again(vertices, triangles, threads);
-  Bvh other = TreeOf::copy(*this);
+  Bvh other = TreeAccess::copy(*this);
   if (!tree_) return other;
   refit_tree(*other.tree_, vertices, triangles, threads);
   other.make_ready();

@@ -15,7 +15,7 @@ double dot(const A& a, const B& b) {
 
 FastWinding::FastWinding(const Mesh& mesh) {
   for (const Index3& triangle : mesh.triangles) {
-    Corners corners{};
+    WeighedTriangle corners{};
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         const double x = static_cast<double>(mesh.vertices[triangle[i]][k]);
@@ -37,10 +37,10 @@ void FastWinding::build(std::size_t begin, std::size_t end) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   Node node{};
-  const std::span<Corners> triangles = std::span(triangles_).subspan(begin, end - begin);
+  const std::span<WeighedTriangle> triangles = std::span(triangles_).subspan(begin, end - begin);
   double lo[3], hi[3], area = 0;
   for (int k = 0; k < 3; ++k) lo[k] = hi[k] = triangles[0].middle[k];
-  for (const Corners& triangle : triangles) {
+  for (const WeighedTriangle& triangle : triangles) {
     const double part = std::sqrt(dot(triangle.normal, triangle.normal));
     area += part;
     for (int k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ void FastWinding::build(std::size_t begin, std::size_t end) {
     }
   }
   for (int k = 0; k < 3; ++k) node.center[k] = area > 0 ? node.center[k] / area : triangles[0].middle[k];
-  for (const Corners& triangle : triangles) {
+  for (const WeighedTriangle& triangle : triangles) {
     for (const Double3& corner : triangle.corner) {
       double square = 0;
       for (int k = 0; k < 3; ++k) square += (corner[k] - node.center[k]) * (corner[k] - node.center[k]);
@@ -76,8 +76,9 @@ void FastWinding::build(std::size_t begin, std::size_t end) {
                      : hi[1] - lo[1] >= hi[2] - lo[2]                                 ? 1
                                                                                       : 2;
     const auto half = static_cast<std::ptrdiff_t>(triangles.size() / 2);
-    std::nth_element(triangles.begin(), triangles.begin() + half, triangles.end(),
-                     [&](const Corners& a, const Corners& b) { return a.middle[axis] < b.middle[axis]; });
+    std::nth_element(
+        triangles.begin(), triangles.begin() + half, triangles.end(),
+        [&](const WeighedTriangle& a, const WeighedTriangle& b) { return a.middle[axis] < b.middle[axis]; });
     build(begin, begin + static_cast<std::size_t>(half));
     build(begin + static_cast<std::size_t>(half), end);
   }
@@ -100,7 +101,7 @@ double FastWinding::of_node(const Node& node, const Double3& x) {
   return sum * over_3 * over_four_pi;
 }
 
-double FastWinding::of_triangle(const Corners& triangle, const Double3& point) {
+double FastWinding::of_triangle(const WeighedTriangle& triangle, const Double3& point) {
   Double3 a, b, c;
   for (int k = 0; k < 3; ++k) {
     a[k] = triangle.corner[0][k] - point[k];

@@ -29,7 +29,7 @@ class FastWinding {
     std::uint32_t begin, count;  // triangles of a leaf; count is 0 for others
     double order_0[3], order_1[3][3], order_2[3][3][3];
   };
-  struct Corners {
+  struct WeighedTriangle {
     Double3 corner[3];
     Double3 middle, normal;  // normal: of the length of the area
   };
@@ -37,9 +37,9 @@ class FastWinding {
   void build(std::size_t begin, std::size_t end);
   double at(const Double3& point, double beta) const;
   static double of_node(const Node& node, const Double3& from_point);
-  static double of_triangle(const Corners& triangle, const Double3& point);
+  static double of_triangle(const WeighedTriangle& triangle, const Double3& point);
 
-  std::vector<Corners> triangles_;
+  std::vector<WeighedTriangle> triangles_;
   std::vector<Node> nodes_;
 };
 

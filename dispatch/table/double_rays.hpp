@@ -69,7 +69,7 @@ using DoubleBatch = TraceBatchOf<double>;
 using DoubleListBatch = ListBatchOf<double>;
 
 struct DoubleRayKernels {
-  // A ray in a call of its own, as ChosenCallRow.
+  // A ray in a call of its own, as RuledCallRow.
   HitD (*closest_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
   bool (*any_of_ray)(const DoubleTreeView& tree, const RayD& ray, Facing facing, std::uint32_t skipped);
   KeptRow<DoubleTreeView, double> kept;

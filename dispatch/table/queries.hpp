@@ -81,7 +81,7 @@ struct AskedOf {
   void* function = nullptr;
   Facing facing = Facing::any;
   std::uint32_t skipped = no_primitive;
-  const HitOf<T>* after = nullptr;  // only hits behind this one count; null: all
+  const HitOf<T>* after = nullptr;  // only hits after this one count; null: all
   bool any = false;                 // whether the first hit that is kept ends the search
 };
 // The nearest hit that is kept, or whether there is one.
@@ -103,12 +103,12 @@ struct QueryKernels {
   std::size_t (*list_together)(const TreeView& tree, const ListBatch& batch);
   std::size_t (*scratch_bytes)(std::size_t rays, std::size_t room);
   // Nearest hits and any hits of the triangles that batch.facing and batch.skip leave: single rays, and streams. The
-  // latter are null in the counted row. `next` and lists look at these, too.
-  TraversalRow chosen_single, chosen_stream;
-  ChosenCallRow chosen_call;      // null in the counted row
+  // latter are null in the counted row. `closest_after` and lists look at these, too.
+  TraversalRow ruled_single, ruled_stream;
+  RuledCallRow ruled_call;        // null in the counted row
   KeptRow<TreeView, float> kept;  // null in the counted row
-  // The nearest hits behind the hits of batch.after, in the order of t and then of primitives; null: nearest hits.
-  void (*next)(const TreeView& tree, const TraceBatch& batch);
+  // The nearest hits after those of batch.after, in the order of t and then of primitives; null: nearest hits.
+  void (*closest_after)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.
   void (*visit)(const TreeView& tree, const VisitBatch& batch);
 };

@@ -49,7 +49,7 @@ struct NearestSoFar {
 };
 // One ray in a call of its own by the exact test, of triangles of the sides that `facing` names, without the skipped
 // primitive; no_primitive: with all of them. `nearer` is for a valid ray and a part of a tree that is not empty.
-struct ChosenCallRow {
+struct RuledCallRow {
   Hit (*closest)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
   bool (*any)(const TreeView& tree, const Ray& ray, Facing facing, std::uint32_t skipped);
   void (*nearer)(const TreeView& tree, const Ray& ray, NearestSoFar& best, Facing facing,
@@ -73,9 +73,9 @@ struct TraceBatchOf {
   Facing facing = Facing::any;        // only rows of QueryKernels look, and packets of the exact test
   // And for each ray the primitive that is not there for it; null: none is left out.
   const std::uint32_t* skip = nullptr;
-  const HitOf<T>* after = nullptr;  // of `next`: for each ray the hit that it looks behind
+  const HitOf<T>* after = nullptr;  // of `closest_after`: for each ray the hit after which it looks
   // For packets of floats: what traces rays that go alone; not null if `facing` or `skip` say something.
-  const ChosenCallRow* chosen = nullptr;
+  const RuledCallRow* chosen = nullptr;
 
   // Some of the rays, with their answers. Inlined always, so that no symbol has a path's instructions.
   [[gnu::always_inline]] TraceBatchOf part(std::size_t first, std::size_t count) const {

@@ -65,7 +65,7 @@ struct LeafVisit {
   std::uint8_t* occluded;  ///< in occluded(): 1 for rays that have hit, else 0; null in closest()
   const std::uint32_t*
       skip;  ///< for each ray of this part the primitive that is not there for it; null: none
-  /// In closest(): for each ray of this part the hit behind which its nearest hit is looked for; null: none.
+  /// In closest(): for each ray of this part the hit after which its nearest hit is looked for; null: none.
   const Hit* after;
 
   std::uint32_t instance = no_part;  ///< the instance of the scene; no_part in a BoundedTree
@@ -77,10 +77,10 @@ struct LeafVisit {
   }
   /// Returns the index of ray[number] in the batch of the call; 0 for a call with one ray.
   std::size_t caller_index(std::uint32_t number) const { return numbers[number]; }
-  /// Stores a hit of ray[number], with its primitive set, if it comes behind after[number] and is the nearest so far;
+  /// Stores a hit of ray[number], with its primitive set, if it comes after `after[number]` and is the nearest so far;
   /// in occluded() stores 1.
   void keep(std::uint32_t number, const Hit& found) const;
-  /// Keeps the first hit of a primitive that comes behind after[number], if test(primitive, ray, hit) finds it: a
+  /// Keeps the first hit of a primitive that comes after `after[number]`, if test(primitive, ray, hit) finds it: a
   /// PrimitiveTest, which is also asked for the rest of the ray from there on. For primitives that a ray hits several
   /// times; two hits of one primitive less than two ULPs apart count as one.
   template <class Test>
@@ -97,15 +97,15 @@ inline bool is_nearer(const Hit& a, const Hit& b) {
          (a.t == b.t && a.t < std::numeric_limits<float>::infinity() && a.primitive < b.primitive);
 }
 
-/// Returns whether a hit comes behind another one: by t, then by primitive. Nothing comes behind a miss.
-inline bool is_behind(const Hit& hit, const Hit& last) {
+/// Returns whether a hit comes after another one: by t, then by primitive. Nothing comes after a miss.
+inline bool comes_after(const Hit& hit, const Hit& last) {
   return hit.t > last.t || (hit.t == last.t && hit.primitive > last.primitive);
 }
 
 inline void LeafVisit::keep(std::uint32_t number, const Hit& found) const {
   if (occluded != nullptr)
     occluded[number] = 1;
-  else if ((after == nullptr || is_behind(found, after[number])) && is_nearer(found, hit[number]))
+  else if ((after == nullptr || comes_after(found, after[number])) && is_nearer(found, hit[number]))
     hit[number] = found;
 }
 template <class Test>
@@ -114,7 +114,7 @@ void LeafVisit::keep_first(std::uint32_t number, std::uint32_t primitive, Test& 
   if (!test(primitive, ray[number], found)) return;
   found.primitive = primitive;
   keep(number, found);
-  if (after == nullptr || is_behind(found, after[number])) return;
+  if (after == nullptr || comes_after(found, after[number])) return;
   // A test may compare an unrounded t with tmin, so the rest of the ray begins before the last hit at first.
   for (const float way : {-1.0f, 1.0f}) {
     Ray rest = ray[number];
@@ -123,7 +123,7 @@ void LeafVisit::keep_first(std::uint32_t number, std::uint32_t primitive, Test& 
     if (!test(primitive, rest, found)) return;
     found.primitive = primitive;
     keep(number, found);
-    if (is_behind(found, after[number])) return;
+    if (comes_after(found, after[number])) return;
   }
 }
 
@@ -162,7 +162,7 @@ struct VisitOptions {
   /// TraceOptions. A LeafTest or LeafFunction of your own looks at LeafVisit::skip.
   PrimitiveView skip = {};
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
-  /// For closest(): returns for ray i the first hit behind after[i], by t, then by primitive; otherwise as
+  /// For closest(): returns for ray i the first hit after `after[i]`, by t, then by primitive; otherwise as
   /// TraceOptions::after. A primitive has those hits that a PrimitiveTest finds in the whole ray and in the rest of it:
   /// LeafVisit::keep_first() says how. A LeafTest or LeafFunction of your own keeps all hits of a primitive, or calls
   /// that.

@@ -96,7 +96,7 @@ class Bvh : public TriangleTree {
   TreeReport report() const;                ///< what the tree is, and what its build took; visits all nodes
 
  private:
-  friend struct TreeOf;
+  friend struct TreeAccess;
   [[gnu::visibility("hidden")]] explicit Bvh(std::unique_ptr<struct BvhArrays> tree) noexcept;
   [[gnu::visibility("hidden")]] void make_ready() noexcept;
   [[gnu::visibility("hidden")]] bool must_build(VertexView vertices, IndexView triangles, int threads) const;

@@ -19,7 +19,7 @@ using VertexViewD = VertexRecords<double>;
 using RayViewD = RayRecords<RayD>;
 /// A view of hits of doubles; otherwise as HitView.
 using HitViewD = HitRecords<HitD>;
-/// A view of the hits of doubles behind which rays look for the next; otherwise as AfterView.
+/// A view of the hits of doubles after which rays look for the next; otherwise as AfterView.
 using AfterViewD = AfterRecords<HitD>;
 /// The ends of segments of doubles.
 using SegmentEndsD = SegmentEndsOf<double>;
@@ -38,7 +38,7 @@ struct TraceOptionsD {
   LaneBits active = nullptr;    ///< the active rays of a batch; null: all
   PrimitiveView skip =
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
-  /// For closest(): returns for ray i the first hit behind after[i], in the order of t, then of primitives; otherwise
+  /// For closest(): returns for ray i the first hit after `after[i]`, in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
   AfterViewD after = {};
   const Progress* progress = nullptr;  ///< as in TraceOptions
@@ -148,7 +148,7 @@ class BvhD : public SurfaceQueries<BvhD>, public PointQueries<BvhD> {
   TreeReport report() const;
 
  private:
-  friend struct TreeOf;
+  friend struct TreeAccess;
   explicit BvhD(std::unique_ptr<struct BvhDArrays> tree) noexcept;
 
   std::unique_ptr<struct BvhDArrays> tree_;  // null: the empty tree

@@ -78,7 +78,7 @@ using Crossing = CrossingOf<float>;
 using CrossingD = CrossingOf<double>;
 
 /// A function that rejects hits, a batch at a time: hits[k] is a hit of ray rays[k] of the call. Set rejected[k], which
-/// is 0, to 1 to trace the ray on behind this hit.
+/// is 0, to 1 to trace the ray on after this hit.
 /// The calling thread calls it with hits of many rays at a time, one of each. It sees the hits of a ray in order, each
 /// once, up to the one that it keeps. Exceptions pass through.
 template <class AnyHit>

@@ -19,8 +19,8 @@ struct KernelsOfCalls {
   const View* view = nullptr;
   Hit (*closest)(const View&, const Ray&) = nullptr;
   bool (*occluded)(const View&, const Ray&) = nullptr;
-  Hit (*closest_chosen)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
-  bool (*occluded_chosen)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
+  Hit (*closest_by_rule)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
+  bool (*occluded_by_rule)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
 };
 
 }  // namespace detail
@@ -46,14 +46,14 @@ class RayCalls {
   /// Returns the nearest hit of the ray, or a miss.
   Hit closest(const Ray& ray) const {
     if (kernels_.closest != nullptr) return kernels_.closest(*kernels_.view, ray);
-    if (kernels_.closest_chosen == nullptr) return tree_->closest(ray, options_);
-    return kernels_.closest_chosen(*kernels_.view, ray, options_.facing, skipped());
+    if (kernels_.closest_by_rule == nullptr) return tree_->closest(ray, options_);
+    return kernels_.closest_by_rule(*kernels_.view, ray, options_.facing, skipped());
   }
   /// Returns whether the ray's segment hits any triangle.
   bool occluded(const Ray& ray) const {
     if (kernels_.occluded != nullptr) return kernels_.occluded(*kernels_.view, ray);
-    if (kernels_.occluded_chosen == nullptr) return tree_->occluded(ray, options_);
-    return kernels_.occluded_chosen(*kernels_.view, ray, options_.facing, skipped());
+    if (kernels_.occluded_by_rule == nullptr) return tree_->occluded(ray, options_);
+    return kernels_.occluded_by_rule(*kernels_.view, ray, options_.facing, skipped());
   }
 
  private:

@@ -49,7 +49,7 @@ class RayQueries {
   bool occluded(const Ray& ray) const;
 
   /// Finds the nearest hit of each ray: hits[i] belongs to rays[i].
-  /// Inactive rays (options.active) leave their hit unchanged. Skips, hits behind which rays look and the mask of
+  /// Inactive rays (options.active) leave their hit unchanged. Skips, hits after which rays look and the mask of
   /// active rays may lie where hits go: the call copies them.
   /// Each thread keeps up to 20 MB of scratch memory, 40 MB if rays or hits are not contiguous or of a scene.
   /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap rays
@@ -83,7 +83,7 @@ class RayQueries {
 
   /// Finds the nearest hit of each ray that the filter does not reject, by TriangleTest::exact. `rays` are records or
   /// arrays, as in closest() of many rays.
-  /// The filter is called with batches of hits; rejected rays are traced on behind their hit. All modes return the same
+  /// The filter is called with batches of hits; rejected rays are traced on after their hit. All modes return the same
   /// hits. An empty filter rejects nothing.
   template <class Some, std::convertible_to<Filter> Asked>
   void closest(const Some& rays, Hits hits, const Asked& filter, const Options& options = {}) const {
@@ -109,7 +109,7 @@ class RayQueries {
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false, by TriangleTest::exact.
   /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
-  /// hits behind the result, and again about a triangle that the tree has in several leaves. If its result depends on
+  /// hits after the result, and again about a triangle that the tree has in several leaves. If its result depends on
   /// the hit alone, so does that of this call. It may query trees; its exceptions pass through. To see hits in order,
   /// call all_hits() or closest() with options.after.
   template <std::predicate<const Hit&> Rejects>
@@ -183,7 +183,7 @@ class SurfaceQueries : public RayQueries<Tree> {
   /// all triangles but the skipped one, whatever options.facing is; in scenes over the triangles of one
   /// instance, in its space. If all of them have the same corners, all count.
   /// A ray in the plane of a triangle, or from a point on an edge of it, does not pass it. A cell that is only touched
-  /// at a corner has no passage: particles go through cells that share faces by crossings(), as docs/crossings.md says.
+  /// at a corner has no crossing: particles go through cells that share faces by crossings(), as docs/crossings.md says.
   /// Takes all options of closest(), `after` too. Throws as closest() does, and std::invalid_argument for another test
   /// than TriangleTest::exact, and if a geometry of a scene does not consist of triangles.
   Hit closest_crossing(const Ray& ray, const Options& options = {}) const;

@@ -129,8 +129,8 @@ typedef struct raylanes_ray_options {
   const void* skip;
   size_t skip_stride;
   size_t max_count;  ///< all_hits and crossings keep the first so many items of each ray; default SIZE_MAX
-  /// In closest and closest_crossing, for each ray a hit of the tree, behind which its first one is found, in the order
-  /// of t, then of primitives. Behind a miss there is none, behind t = -infinity the first. Default NULL: none.
+  /// In closest and closest_crossing, for each ray a hit of the tree, after which its first one is found, in the order
+  /// of t, then of primitives. After a miss there is none, after t = -infinity the first. Default NULL: none.
   const void* after;
   size_t after_stride;
 } raylanes_ray_options;

@@ -238,7 +238,7 @@ struct PrimitiveView {
   }
 };
 
-/// A view of hits to read: for each ray the hit behind which the next one is looked for, a Record every `stride` bytes,
+/// A view of hits to read: for each ray the hit after which the next one is looked for, a Record every `stride` bytes,
 /// of any alignment. It owns nothing. It converts from one hit, from a contiguous range of hits, and from a view of
 /// hits; not from a temporary range that owns its elements. Hits in scenes also name the instance, which scenes need.
 template <class Record>
@@ -292,7 +292,7 @@ struct AfterRecords {
       return std::addressof(hit);
   }
 };
-/// A view of the hits behind which rays look for the next.
+/// A view of the hits after which rays look for the next.
 using AfterView = AfterRecords<Hit>;
 
 namespace detail {

@@ -204,7 +204,7 @@ class Scene : public SurfaceQueries<Scene> {
   void update(int threads = 1);
 
   // Queries: options apply to the triangles within geometries. TraceOptions::skip and after take hits in scenes: in
-  // closest(), after[i] is the hit behind which ray i looks, in the order of t, then instance, then primitive. The
+  // closest(), after[i] is the hit after which ray i looks, in the order of t, then instance, then primitive. The
   // test is exact then. A sphere has two hits, in and out: skip leaves out the one nearer to tmin. Your own primitives
   // have what their test finds, as VisitOptions::after says. TraceOptions::facing means the sides of a geometry in
   // its own space: an instance that mirrors a solid is entered at fronts, too. Scenes with spheres refuse it; the test
@@ -240,7 +240,7 @@ class Scene : public SurfaceQueries<Scene> {
   SceneReport report() const noexcept;
 
  private:
-  friend struct TreeOf;
+  friend struct TreeAccess;
   [[gnu::visibility("hidden")]] const struct SceneParts& parts() const noexcept;
   [[gnu::visibility("hidden")]] SceneParts& changed();
   std::unique_ptr<SceneParts> parts_;  // null: moved from

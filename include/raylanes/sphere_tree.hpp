@@ -24,7 +24,7 @@ struct QueryTypes<SphereTree> {
 /// A tree over the surfaces of spheres. A default-constructed or moved-from object has no spheres.
 /// The nearest hit has the bytes that closest_hit() of <raylanes/spheres.hpp> returns for all spheres, on every ISA
 /// path. Spheres that reach beyond the largest float are not hit. A sphere does not occlude a ray within it.
-/// A sphere has two hits, in and out: options.after finds one behind the other. If options.skip names a sphere, the hit
+/// A sphere has two hits, in and out: options.after finds one after the other. If options.skip names a sphere, the hit
 /// nearer to tmin, where the ray begins, is not there; the other one is. If a caller rejects a hit, the ray goes on
 /// behind it.
 class SphereTree : public RayQueries<SphereTree> {
@@ -46,7 +46,7 @@ class SphereTree : public RayQueries<SphereTree> {
 
  private:
   friend class Scene;
-  friend struct TreeOf;
+  friend struct TreeAccess;
   std::unique_ptr<struct SphereTreeArrays> tree_;  // null: none
 };
 

@@ -37,7 +37,7 @@ struct SceneStretch : Stretch {
 /// count together: where the ray touches an edge, or passes from one solid into the next that shares a face, nothing
 /// ends. Stretches whose ends round to one number are left out.
 /// The sum of (exit − entry)·winding is that of exact arithmetic, but for the rounding of each crossing's t.
-/// Undecided are rays with tmin < 0 whose origin lies on an edge: crossings() does not count a passage at t = 0 there.
+/// Undecided are rays with tmin < 0 whose origin lies on an edge: crossings() does not count a crossing at t = 0 there.
 /// Takes the time and memory of crossings() of rays without an end. options.skip leaves out a crossing of that triangle
 /// from the sums. Throws as crossings() does, and std::invalid_argument if options.facing is not Facing::any.
 RayLists<Stretch> stretches(const TriangleTree& tree, RayView rays, const ListOptions& options = {});

@@ -59,7 +59,7 @@ struct TraceOptions {
   /// leaf's triangles exceed a vector, the lanes of the ISA path. Counts of other modes also depend on which rays are
   /// traced together, and so on the number of threads.
   TraceCounters* counters = nullptr;
-  /// For closest() with TriangleTest::exact: returns for ray i the first hit behind after[i], in the order of t, then
+  /// For closest() with TriangleTest::exact: returns for ray i the first hit after `after[i]`, in the order of t, then
   /// of primitives; in scenes of t, then instance, then primitive. Usually these are the hits of an earlier call:
   /// {.after = hits}; they may be those that results go to.
   /// If after[i] is a miss, ray i returns a miss. If its t is -infinity, ray i returns its first hit. An empty view
@@ -146,7 +146,7 @@ class TriangleTree : public SurfaceQueries<TriangleTree>, public PointQueries<Tr
   // The tree that kernels traverse.
   virtual TracedTree traced() const noexcept = 0;
 
-  friend struct TreeOf;
+  friend struct TreeAccess;
   const TreeView* ready_ = nullptr;
 };
 

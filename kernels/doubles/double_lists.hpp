@@ -18,12 +18,13 @@ struct DoubleList : AllHits<HitStore<double>> {
   // FrameRay finds that out.
   static bool may_hit(const DoubleTreeView&, const RayD&) { return true; }
 
-  template <class Filtered>
-  bool add_found(const DoubleTreeView& tree, const RayD& ray, const Filtered& filtered, std::uint32_t first) {
+  template <class AnyVerdict>
+  bool add_found(const DoubleTreeView& tree, const RayD& ray, const AnyVerdict& verdict,
+                 std::uint32_t first) {
     const double before = tmax;
-    if (filtered.undecided != 0) [[unlikely]]
+    if (verdict.undecided != 0) [[unlikely]]
       ++beside;
-    const bool is_done = HitList::add_found(tree, ray, filtered, first);
+    const bool is_done = HitList::add_found(tree, ray, verdict, first);
     if (tmax < before) end = frame->end_of(tmax);
     return is_done;
   }

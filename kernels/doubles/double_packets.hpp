@@ -50,7 +50,7 @@ struct alignas(64) DoublePacketRays : PacketRays {
     return {{{V::load(of.begin + first), V::load(of.end + first)}, V::load(of.t_lo + first)},
             as<double>(Words::load(of.leaf_triangle + first))};
   }
-  void keep(int row, int first, std::uint32_t lanes, const FilterResult<V, MaskOf<V>>& decided,
+  void keep(int row, int first, std::uint32_t lanes, const Verdict<V, MaskOf<V>>& decided,
             std::uint32_t leaf_triangle) {
     Doubled& of = doubled[row];
     auto kept = state(row, first);
@@ -106,7 +106,7 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
     frame_.apex_offset = frame_.past = batch_.apex_offset();
     for (int row = 0; row < rays_.vectors; ++row) rays_.begin(batch_, row, frame_);
   }
-  void trace_single(std::size_t index) { batch_.trace_alone(index); }
+  void trace_single(std::size_t index) { batch_.trace_single(index); }
   void prefetch_leaf(TreeReference leaf) { triangles_.prefetch_leaf(leaf_of(leaf)); }
 
   [[gnu::noinline, gnu::flatten]] void visit_leaf(const DoubleEntry& at) {
@@ -243,7 +243,7 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
       DoublePacketLeaves(nodes, rays, scratch.rays, {probe.ray.origin, reach(probe.ray, nodes.bounds)})
           .trace(scratch.order);
     } else {
-      for (std::size_t i = 0; i < rays.size; ++i) rays.trace_alone(i);
+      for (std::size_t i = 0; i < rays.size; ++i) rays.trace_single(i);
     }
     rays.doubles += rays.size;
     if (rays.only_decides())

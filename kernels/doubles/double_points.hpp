@@ -33,7 +33,7 @@ struct ScaledTriangles {
     return !(differ(0, 3) && differ(3, 6) && differ(6, 0));
   }
   // From these units. Weights may add up to a little more than 1, which must not overflow.
-  void leave_units(ClosestPointD& closest) const {
+  void to_units_of_mesh(ClosestPointD& closest) const {
     constexpr double most = std::numeric_limits<double>::max();
     const double inverse = 1.0 / scale;
     closest.distance = __builtin_sqrt(closest.distance_squared) * inverse;
@@ -155,7 +155,7 @@ class DoublePoints {
   }
 
   // Corners less a point, in the units of BoxDistance, rounded to floats.
-  struct Corners {
+  struct ScaledCorners {
     Doubles<half> scale;
     Vec3<Doubles<half>> origin;  // in these units
 
@@ -169,7 +169,7 @@ class DoublePoints {
   };
 
   struct Before {
-    Corners corners;
+    ScaledCorners corners;
     Vec3<Doubles<half>> exact;
     float least_limit;
 
@@ -205,7 +205,7 @@ class DoublePoints {
     Floats<native_lanes> at(int axis, int first) const {
       return relative(axis, packet_.exact[axis] + first, 1.0);
     }
-    Corners corners() const {
+    ScaledCorners corners() const {
       using D = Doubles<half>;
       return {D(scale_ * unit_), {D(first_[0] * unit_), D(first_[1] * unit_), D(first_[2] * unit_)}};
     }

@@ -9,10 +9,10 @@
 namespace raylanes {
 namespace {
 
-// A hit behind which all hits are.
+// A hit after which all hits are.
 inline constexpr HitD before_all_doubles{-std::numeric_limits<double>::infinity(), 0.0, 0.0, 0, 0};
 
-// The hit that is nearest by a rule: BothSides, or HitsBehind. Frame says where a t ends in the frame.
+// The hit that is nearest by a rule: NoRule, or HitsAfter. Frame says where a t ends in the frame.
 template <class Rule, class Frame = FrameRay>
 struct NearestDouble : NearestFirst, DoubleCandidate {
   const Frame& frame;
@@ -25,19 +25,19 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
   }
   float box_tmax() const { return end; }
 
-  template <class Filtered>
-  void keep(const DoubleTreeView& tree, const RayD& ray, Filtered filtered, std::uint32_t first) {
+  template <class AnyVerdict>
+  void keep(const DoubleTreeView& tree, const RayD& ray, AnyVerdict verdict, std::uint32_t first) {
     const DoubleTriangles triangles(tree);
-    if constexpr (!std::is_same_v<Rule, BothSides>)
-      filtered.certain = rule.chosen(filtered.certain, filtered.det, triangles, first);
+    if constexpr (!std::is_same_v<Rule, NoRule>)
+      verdict.certain = rule.admitted(verdict.certain, verdict.det, triangles, first);
     const std::uint32_t before = leaf_triangle;
-    keep_nearest(triangles, ray, filtered, first, *this, rule);
+    keep_nearest(triangles, ray, verdict, first, *this, rule);
     if (leaf_triangle != before) end = frame.end_of(tmax);
   }
   using DoubleCandidate::keep;
 
-  HitsBehind<HitD> rule_if_unusual() const {
-    if constexpr (std::is_same_v<Rule, BothSides>)
+  HitsAfter<HitD> rule_if_unusual() const {
+    if constexpr (std::is_same_v<Rule, NoRule>)
       return {before_all_doubles, Facing::any};
     else
       return rule;
@@ -46,36 +46,36 @@ struct NearestDouble : NearestFirst, DoubleCandidate {
 };
 
 // The triangles that the caller chooses, if they are hit: one code serves all sides.
-struct ChosenHits : BothSides {
+struct DoubleHitRule : NoRule {
   Facing facing;
   std::uint32_t skipped;
 
-  explicit ChosenHits(Facing sides = Facing::any, std::uint32_t primitive = no_primitive)
+  explicit DoubleHitRule(Facing sides = Facing::any, std::uint32_t primitive = no_primitive)
       : facing(sides), skipped(primitive) {}
 };
-template <class Filtered>
-inline void leave_chosen(const DoubleTriangles& triangles, Filtered& filtered, std::uint32_t first,
-                         const ChosenHits& sides) {
-  const std::uint32_t front = bits(filtered.det > decltype(filtered.det)(0.0f));
-  filtered.certain = lanes_that_count(sides.facing, filtered.certain, front);
-  filtered.certain = lanes_but(sides.skipped, filtered.certain, triangles, first);
-  filtered.undecided = lanes_but(sides.skipped, filtered.undecided, triangles, first);
+template <class AnyVerdict>
+inline void keep_admitted(const DoubleTriangles& triangles, AnyVerdict& verdict, std::uint32_t first,
+                          const DoubleHitRule& sides) {
+  const std::uint32_t front = bits(verdict.det > decltype(verdict.det)(0.0f));
+  verdict.certain = admitted_lanes(sides.facing, verdict.certain, front);
+  verdict.certain = lanes_but(sides.skipped, verdict.certain, triangles, first);
+  verdict.undecided = lanes_but(sides.skipped, verdict.undecided, triangles, first);
 }
 
-// As ChosenAny.
+// As RuledAny.
 struct AnyDouble : AsStored {
   static constexpr bool only_decides = true;
-  ChosenHits sides;
+  DoubleHitRule sides;
   double tmax;
   float end;
   int beside = never_beside;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, const ChosenHits& chosen = ChosenHits())
+  AnyDouble(const RayD& ray, float end_of_ray, const DoubleHitRule& chosen = DoubleHitRule())
       : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
 
-  HitsBehind<HitD> rule_if_unusual() const { return {before_all_doubles, sides.facing, sides.skipped}; }
+  HitsAfter<HitD> rule_if_unusual() const { return {before_all_doubles, sides.facing, sides.skipped}; }
   void take_unusual(std::uint32_t nearest) { found = nearest != no_leaf_triangle; }
 };
 
@@ -105,7 +105,7 @@ class DoubleLeaves {
   }
 
  private:
-  // The ray as Exact::classify() and visit_filtered() read it.
+  // The ray as Exact::classify() and visit_screened() read it.
   template <class V>
   struct PreparedNumbers {
     using Precision = PrecisionOfDoubles;
@@ -142,7 +142,7 @@ class DoubleLeaves {
       std::uint32_t occupied = (2u << (size - at - 1)) - 1u;
       if (is_along_ && query.beside > never_beside + few_beside) [[unlikely]]
         occupied &= ~lanes_beside<V>({x + at, y + at, z + at}, 3 * rows);
-      if (visit_filtered<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
+      if (visit_screened<Exact<Grade::fast>>(tree_, ray_, prepared, load, occupied,
                                              first + static_cast<std::uint32_t>(at), query, counters))
         return true;
     }
@@ -201,8 +201,8 @@ inline void search_padded(const DoubleTreeView& tree, const DoubleLeaves& leaves
                                                                                const RayD& ray,
                                                                                const DoubleLeaves& leaves,
                                                                                const FrameRay& frame,
-                                                                               const HitsBehind<HitD>& rule) {
-  NearestDouble<HitsBehind<HitD>> query(DoubleCandidate(ray), frame, rule, frame.ray.tmax);
+                                                                               const HitsAfter<HitD>& rule) {
+  NearestDouble<HitsAfter<HitD>> query(DoubleCandidate(ray), frame, rule, frame.ray.tmax);
   search_padded(tree, leaves, frame, query);
   return query.leaf_triangle;
 }
@@ -249,13 +249,13 @@ template <class Rule>
 }
 #if !defined(__AVX2__) || !defined(__FMA__)
 // By the same code, which is much where walks are not fused.
-inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray, double begin, BothSides) {
-  return nearest_triangle(tree, ray, begin, HitsBehind<HitD>{before_all_doubles, Facing::any});
+inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ray, double begin, NoRule) {
+  return nearest_triangle(tree, ray, begin, HitsAfter<HitD>{before_all_doubles, Facing::any});
 }
 #endif
 // A ray in a call of its own.
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
-  return nearest_triangle(tree, ray, ray.tmin, BothSides());
+  return nearest_triangle(tree, ray, ray.tmin, NoRule());
 }
 [[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
                                             std::uint32_t skipped) {
@@ -263,11 +263,11 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
   return known_hit(DoubleTriangles(tree), ray,
                    takes_all ? nearest_triangle_of_ray(tree, ray)
                              : nearest_triangle(tree, ray, ray.tmin,
-                                                HitsBehind<HitD>{before_all_doubles, facing, skipped}));
+                                                HitsAfter<HitD>{before_all_doubles, facing, skipped}));
 }
 
 [[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray,
-                                              const ChosenHits& sides = ChosenHits()) {
+                                              const DoubleHitRule& sides = DoubleHitRule()) {
   FrameRay frame(tree, ray, ray.tmin);
   if (!frame.may_hit) return false;
   AnyDouble query(ray, frame.ray.tmax, sides);
@@ -276,7 +276,7 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
 }
 [[maybe_unused]] bool any_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
                                         std::uint32_t skipped) {
-  return hits_any(tree, ray, ChosenHits(facing, skipped));
+  return hits_any(tree, ray, DoubleHitRule(facing, skipped));
 }
 
 // A ray whose caller is asked about hits: the nearest one first, each by a search.
@@ -284,8 +284,8 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
                                     const AskedOf<double>& asked) {
   HitD last = asked.after != nullptr ? *asked.after : before_all_doubles;
   do {
-    const HitsBehind<HitD> rule{last, asked.facing, asked.skipped};
-    const std::uint32_t nearest = nearest_triangle(tree, ray, begin_behind(&last, ray.tmin), rule);
+    const HitsAfter<HitD> rule{last, asked.facing, asked.skipped};
+    const std::uint32_t nearest = nearest_triangle(tree, ray, begin_after(&last, ray.tmin), rule);
     if (nearest == no_leaf_triangle) return {};
     last = known_hit(DoubleTriangles(tree), ray, nearest);
   } while (asked.rejects != nullptr && asked.rejects(asked.function, last));
@@ -310,12 +310,12 @@ struct KnownDoubles {
 [[gnu::noinline, gnu::flatten, maybe_unused]] HitD closest_kept_double(const DoubleTreeView& tree,
                                                                        const RayD& ray,
                                                                        const AskedOf<double>& asked) {
-  const FrameRay frame(tree, ray, begin_behind(asked.after, ray.tmin));
+  const FrameRay frame(tree, ray, begin_after(asked.after, ray.tmin));
   if (!frame.may_hit) return {};
   FusedRay fused;
   if (!fused.prepare<Exact<Grade::fast>>(tree.tree, frame.ray, frame.more)) [[unlikely]]
     return kept_in_order(tree, ray, asked);
-  KeptHit<double, false, ChosenHits, RestInFrame, KnownDoubles> query(ray, asked, {ray, frame}, {});
+  KeptHit<double, false, DoubleHitRule, RestInFrame, KnownDoubles> query(ray, asked, {ray, frame}, {});
   query.beside = never_beside;
   walk_fused(tree.tree, fused, DoubleLeaves(tree, ray, frame.begin), query);
   return query.best;

@@ -1,7 +1,7 @@
-// Batches of rays of doubles as streams: nodes by floats in the frame of the tree, leaves by the filter on doubles.
+// Batches of rays of doubles as streams: nodes by floats in the frame of the tree, leaves by the screen on doubles.
 #pragma once
 
-#include "../exact/leaf_filter.hpp"
+#include "../exact/leaf_screen.hpp"
 #include "../traverse/streams.hpp"
 #include "doubles_one_by_one.hpp"
 #include "doubles_together.hpp"
@@ -39,11 +39,11 @@ struct DoubleStreamBatch : DoublesTogether {
 template <bool only_decides>
 class DoubleStreamLeaves
     : public StreamOctant<NoCounters>,
-      FilteredRays<DoubleStreamLeaves<only_decides>, Doubles<double_lanes>, only_decides> {
+      ScreenedRays<DoubleStreamLeaves<only_decides>, Doubles<double_lanes>, only_decides> {
   static constexpr int N = double_lanes;
   using V = Doubles<N>;
-  using Filtered = FilteredRays<DoubleStreamLeaves, V, only_decides>;
-  friend Filtered;
+  using Screened = ScreenedRays<DoubleStreamLeaves, V, only_decides>;
+  friend Screened;
 
  public:
   DoubleStreamLeaves(const TreeView& tree, const DoubleStreamBatch& batch)
@@ -55,7 +55,7 @@ class DoubleStreamLeaves
   void begin() {
     for (std::uint32_t i = 0; i < rays_.size; ++i) take(i);
   }
-  void trace_single(std::size_t number) { batch_.trace_alone(number); }
+  void trace_single(std::size_t number) { batch_.trace_single(number); }
   void move(std::size_t number, Ray& to) const { batch_.move(number, to); }
   void prefetch_leaf(TreeReference leaf) const { triangles_.prefetch_leaf(leaf_of(leaf)); }
   // The numbers of the best hits.
@@ -82,25 +82,26 @@ class DoubleStreamLeaves
     const double* const numbers = triangles_.numbers(first);
     const auto row = [&](int k) { return numbers + static_cast<std::uint32_t>(k) * lanes; };
     const auto triangles = static_cast<int>(of.size);
-    const LeafFilterOf<double> filter(row, triangles, static_cast<double>(farthest_), power_of_two(power_));
-    for (std::uint32_t i = 0; i < size; i += N) test_triangles(filter, triangles, first, list + i, size - i);
+    const LeafScreenOf<double> screen(row, triangles, static_cast<double>(farthest_), power_of_two(power_));
+    for (std::uint32_t i = 0; i < size; i += N) test_triangles(screen, triangles, first, list + i, size - i);
   }
 
-  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
-                                                   std::uint32_t size) {
-    each_lone(from, list, size,
-              [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, NoCounters& cost) {
-                trace_lone(below, boxes, i, cost);
-              });
+  [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
+                                                    std::uint32_t size) {
+    each_single(from, list, size,
+                [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, NoCounters& cost) {
+                  trace_single_below(below, boxes, i, cost);
+                });
   }
 
  private:
-  using State = typename Filtered::State;
+  using State = typename Screened::State;
 
-  BothSides sides() const { return {}; }
+  NoRule sides() const { return {}; }
 
   // A ray that goes on alone below a node.
-  void trace_lone(const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, NoCounters& cost) {
+  void trace_single_below(const TreeView& below, const SingleBoxes& boxes, std::uint32_t i,
+                          NoCounters& cost) {
     const RayD& ray = world(i);
     const DoubleLeaves leaves(*batch_.tree, ray, finite_tmin(ray.tmin));
     const auto search_below = [&](auto& query) {
@@ -111,8 +112,7 @@ class DoubleStreamLeaves
       search_below(query);
       if (query.found) end_ray(i);
     } else {
-      NearestDouble<BothSides, ScaledEnd> query(candidate_of(i), batch_.ends[i], BothSides(),
-                                                rays_.rows[i].tmax);
+      NearestDouble<NoRule, ScaledEnd> query(candidate_of(i), batch_.ends[i], NoRule(), rays_.rows[i].tmax);
       search_below(query);
       keep_unscaled(i, query);
     }
@@ -142,7 +142,7 @@ class DoubleStreamLeaves
   }
 
   // A register of rays, or the first `size`, against all triangles of a leaf.
-  void test_triangles(const LeafFilterOf<double>& filter, int triangles, std::uint32_t first,
+  void test_triangles(const LeafScreenOf<double>& screen, int triangles, std::uint32_t first,
                       const ListEntry* list, std::uint32_t size) {
     const void* rows[N];
     double t_lo[N];
@@ -158,7 +158,7 @@ class DoubleStreamLeaves
     const RayLanes<V> rays{vec3(row), vec3(row + 4)};
     V length =
         multiply_add<Grade::fast>((abs(row[4]) + abs(row[5])) + abs(row[6]), V(1.0 + 0x1p-20), V(0x1p-45));
-    this->classify_triangles(rays, length, filter, triangles, first, list, first_lanes<N>(size), left);
+    this->classify_triangles(rays, length, screen, triangles, first, list, first_lanes<N>(size), left);
   }
 
   void keep(std::uint32_t i, double t_lo, double t_hi, std::uint32_t leaf_triangle) {
@@ -222,7 +222,7 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   DoubleStreamLeaves<only_decides> leaves(nodes, rays);
   Streams(leaves, batch.scratch).trace();
 }
-// Batches that choose triangles, and hits behind others, go as single rays.
+// Batches that choose triangles, and hits after others, go as single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
   const bool is_plain = takes_all(batch) && batch.after == nullptr;
   is_plain&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)

@@ -30,16 +30,16 @@ struct HitsFromBegin {
   const DoubleBatch& batch;
 
   double begin(std::size_t i) const { return batch.rays[i].tmin; }
-  BothSides rule(std::size_t) const { return {}; }
+  NoRule rule(std::size_t) const { return {}; }
 };
-struct HitsBehindLast {
+struct HitsAfterOthers {
   const DoubleBatch& batch;
 
-  double begin(std::size_t i) const { return begin_behind(&last_of(i), batch.rays[i].tmin); }
-  HitsBehind<HitD> rule(std::size_t i) const { return {last_of(i), batch.facing, skipped_by(batch, i)}; }
+  double begin(std::size_t i) const { return begin_after(&after_of(i), batch.rays[i].tmin); }
+  HitsAfter<HitD> rule(std::size_t i) const { return {after_of(i), batch.facing, skipped_by(batch, i)}; }
 
  private:
-  const HitD& last_of(std::size_t i) const {
+  const HitD& after_of(std::size_t i) const {
     return batch.after != nullptr ? batch.after[i] : before_all_doubles;
   }
 };
@@ -57,7 +57,7 @@ struct AnyOfBatch {
   void search(const DoubleTreeView& tree, std::size_t i, Query& query) const { query.found = hits(tree, i); }
 
  private:
-  ChosenHits sides(std::size_t i) const { return ChosenHits(batch.facing, skipped_by(batch, i)); }
+  DoubleHitRule sides(std::size_t i) const { return DoubleHitRule(batch.facing, skipped_by(batch, i)); }
 };
 
 #if defined(__AVX2__) && defined(__FMA__)
@@ -137,7 +137,7 @@ inline void closest_doubles_as(const DoubleTreeView& tree, const DoubleBatch& ba
 [[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   takes_all(batch) && batch.after == nullptr
       ? closest_doubles_as<NearestOfBatch<HitsFromBegin>>(tree, batch)
-      : closest_doubles_as<NearestOfBatch<HitsBehindLast>>(tree, batch);
+      : closest_doubles_as<NearestOfBatch<HitsAfterOthers>>(tree, batch);
 }
 [[maybe_unused]] void any_double(const DoubleTreeView& tree, const DoubleBatch& batch) {
 #if defined(__AVX2__) && defined(__FMA__)

@@ -23,7 +23,7 @@ struct DoublesTogether : TraceBatch {
   }
 
   bool only_decides() const { return occluded != nullptr; }
-  void trace_alone(std::size_t number) const {
+  void trace_single(std::size_t number) const {
     const RayD& ray = doubles[number];
     if (only_decides())
       occluded[number] = hits_any(*tree, ray) ? 1 : 0;

@@ -1,5 +1,5 @@
-// Deferred hits of a filtered test: while a search runs it keeps a candidate, the triangle that is hit nearest with two
-// bounds of its t. The numbers t, u, v of the candidate are computed when the search is over. The caller knows where
+// Deferred hits of a test that screens: while a search runs it keeps a candidate, the triangle that is hit nearest with
+// two bounds of its t. The numbers t, u, v of the candidate are computed when the search is over. The caller knows where
 // triangles are: `triangles` has
 //   number(k, leaf_triangle)   number k of a triangle
 //   primitive(leaf_triangle)   its index
@@ -79,8 +79,8 @@ template <class Triangles, class AnyRay>
 // Whether a ray along an axis meets a triangle in a corner that is not before the best hit, whose t is known: around a
 // corner of a grid most triangles are met like that.
 template <class Triangles>
-inline bool is_met_behind(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
-                          const AlongAxes& along, const Candidate& nearest) {
+inline bool is_met_after(const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle,
+                         const AlongAxes& along, const Candidate& nearest) {
   const int corner = corner_met(along.zeros);
   if (corner < 0 || nearest.leaf_triangle == no_leaf_triangle || nearest.t_lo != nearest.tmax) return false;
   const auto axis = static_cast<std::size_t>(SharedAxes(ray.direction).order[2]);
@@ -104,7 +104,7 @@ inline bool is_compared_in_doubles([[maybe_unused]] const Triangles& triangles,
     const HitNumbers numbers(triangles, ray, sizes, leaf_triangle);
     if (numbers.are_outside(ray.tmin, nearest.tmax)) return true;
     const float t = numbers.clear_t();
-    if (std::is_same_v<Rule, BothSides> && t > ray.tmin && t < nearest.t_lo && numbers.are_inside()) {
+    if (std::is_same_v<Rule, NoRule> && t > ray.tmin && t < nearest.t_lo && numbers.are_inside()) {
       nearest.keep(t, t, leaf_triangle);
       return true;
     }
@@ -113,12 +113,11 @@ inline bool is_compared_in_doubles([[maybe_unused]] const Triangles& triangles,
   return false;
 }
 
-// Which hits count is a rule: counted(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it does not
-// count.
+// A rule admits hits: admitted_hit(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it is not admitted.
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
 // triangles, it often is the best one again, met in another part: that is no news.
-template <class Triangles, class AnyRay, class T, class Rule = BothSides>
+template <class Triangles, class AnyRay, class T, class Rule = NoRule>
 [[gnu::noinline]] void compare_exactly(const Triangles& triangles, const AnyRay& ray,
                                        std::uint32_t leaf_triangle, CandidateOf<T>& nearest,
                                        const Rule& rule = {}) {
@@ -132,14 +131,14 @@ template <class Triangles, class AnyRay, class T, class Rule = BothSides>
     return;
   }
   if constexpr (std::is_same_v<AnyRay, Ray>)
-    if (is_met_behind(triangles, ray, leaf_triangle, along, nearest)) return;
+    if (is_met_after(triangles, ray, leaf_triangle, along, nearest)) return;
   const auto rival =
-      rule.counted(hit_to_compare(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
+      rule.admitted_hit(hit_to_compare(triangles, ray, leaf_triangle, along), triangles, ray, leaf_triangle);
   if (!rival) return;
   if (nearest.leaf_triangle != no_leaf_triangle) {
     if (nearest.t_lo != nearest.tmax) {
-      const auto best = rule.counted(hit_to_compare(triangles, ray, nearest.leaf_triangle), triangles, ray,
-                                     nearest.leaf_triangle);
+      const auto best = rule.admitted_hit(hit_to_compare(triangles, ray, nearest.leaf_triangle), triangles,
+                                          ray, nearest.leaf_triangle);
       nearest.keep(best.t, best.t, nearest.leaf_triangle);
     }
     if (rival.t > nearest.tmax ||
@@ -150,14 +149,14 @@ template <class Triangles, class AnyRay, class T, class Rule = BothSides>
 }
 
 // The hits of a register that begins with `leaf_triangle`, at least one that is certain or undecided.
-template <class Triangles, class AnyRay, class FilterResult, class T, class Rule = BothSides>
-inline void keep_nearest(const Triangles& triangles, const AnyRay& ray, const FilterResult& filtered,
+template <class Triangles, class AnyRay, class Verdict, class T, class Rule = NoRule>
+inline void keep_nearest(const Triangles& triangles, const AnyRay& ray, const Verdict& verdict,
                          std::uint32_t leaf_triangle, CandidateOf<T>& nearest, const Rule& rule = {}) {
-  constexpr int N = lanes_of<decltype(filtered.t_lo)>;
+  constexpr int N = lanes_of<decltype(verdict.t_lo)>;
   T t_lo[N], t_hi[N];
-  filtered.t_lo.store(t_lo), filtered.t_hi.store(t_hi);
-  std::uint32_t unclear = filtered.undecided;
-  for (std::uint32_t lanes = filtered.certain; lanes != 0; lanes &= lanes - 1) {
+  verdict.t_lo.store(t_lo), verdict.t_hi.store(t_hi);
+  std::uint32_t unclear = verdict.undecided;
+  for (std::uint32_t lanes = verdict.certain; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     if (t_hi[lane] < nearest.t_lo)
       nearest.keep(t_lo[lane], t_hi[lane], leaf_triangle + static_cast<std::uint32_t>(lane));
@@ -186,7 +185,7 @@ template <class Triangles, class AnyRay>
       continue;
     }
     found = hit_to_compare(triangles, ray, leaf_triangle, along) &&
-            (facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)));
+            (facing == Facing::any || admits(facing, side_of(triangles, ray, leaf_triangle)));
   }
   return found;
 }

@@ -92,7 +92,7 @@ struct EdgeBounds {
 
   // Weights that are zero, bit i that of corner i: exactly, and of no side. If all are, the lane is neither inside nor
   // outside.
-  void leave_out(std::uint32_t zeros) {
+  void drop(std::uint32_t zeros) {
     if (zeros == 0) return;
     V infinity(std::numeric_limits<T>::infinity());
     V* const weights[3] = {&u, &v, &w};

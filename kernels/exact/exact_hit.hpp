@@ -1,4 +1,4 @@
-// Whether a ray hits a triangle, and where, for what a filter leaves undecided: by pairs of doubles, which nearly
+// Whether a ray hits a triangle, and where, for what a screen leaves undecided: by pairs of doubles, which nearly
 // always decide, or by integers. Paths without AVX2 take doubles for pairs where numbers are floats.
 #pragma once
 

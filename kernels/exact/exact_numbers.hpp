@@ -47,7 +47,7 @@ struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
     const Vec3<V> a = wide(lanes.corner) - origin, b = wide(lanes.corner + 3) - origin,
                   c = wide(lanes.corner + 6) - origin;
     EdgeBounds<V> e(a, b, c, shear_of(direction));
-    if constexpr (N == 1) e.leave_out(zeros);
+    if constexpr (N == 1) e.drop(zeros);
     outside = e.certainly_outside();
     V det = e.det(), inverse = V(1.0) / det, inverse_z = V(1.0) / direction.z;
     u = e.v * inverse, v = e.w * inverse, t = e.depth(a.z, b.z, c.z) * inverse * inverse_z;
@@ -74,7 +74,7 @@ struct DecidedInDoubles : NumbersInDoubles<HalfInDoubles<half, N>> {
   static V wide(const float* lanes) { return to_doubles<half>(Floats<N>::load(lanes)); }
 };
 
-// For triangles that are hit.  See LeafFilter, whose formulas these are.
+// For triangles that are hit.  See LeafScreen, whose formulas these are.
 template <int half, int N>
 inline auto numbers_in_doubles(const Vec3<Floats<N>>& origin, const Vec3<Floats<N>>& direction,
                                const float (&corner)[9][N]) {

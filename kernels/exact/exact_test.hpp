@@ -15,7 +15,7 @@ template <Grade>
 struct Exact : OfCorners {
   static constexpr TriangleTest id = TriangleTest::exact;
   static constexpr bool by_major_axis = true, rounds = false, eager = false;
-  static constexpr bool is_filtered = true, has_one_arithmetic = true;
+  static constexpr bool screens = true, has_one_arithmetic = true;
 
   template <class V, class Axes>
   struct Ray {
@@ -54,7 +54,7 @@ struct Exact : OfCorners {
 
   // For the lanes with a triangle. The edge functions end most registers, in a tree mostly without a bound of their
   // own; the ends of the segment, from segment(), decide most of the rest. `Prepared` is a Ray, or has what it has.
-  template <bool in_tree, class Prepared, class Load, class Segment, class Sides = BothSides>
+  template <bool in_tree, class Prepared, class Load, class Segment, class Sides = NoRule>
   static auto classify(const Prepared& ray, Load load, std::uint32_t occupied, Segment segment,
                        Sides sides = {}) {
     using V = decltype(ray.shear_x);
@@ -68,29 +68,29 @@ struct Exact : OfCorners {
     std::uint32_t undecided = occupied & first_lanes<lanes_of<V>>(lanes_of<V>);
     if constexpr (in_tree) {
       undecided &= ~bits(outside_by > ray.bound_anywhere);
-      if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
+      if (undecided == 0) return Verdict<V>{0, 0, none, none, none};
     }
     undecided &= ~bits(outside_by > edges.bound);
-    if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
+    if (undecided == 0) return Verdict<V>{0, 0, none, none, none};
     auto range = segment();
     DepthBounds<V, P> t(edges, a.z, b.z, c.z, ray.ordered_direction.z);
     undecided &= ~bits((t.t_lo > range.tmax) | (t.t_hi < range.tmin));
-    if (undecided == 0) return FilterResult<V>{0, 0, none, none, none};
+    if (undecided == 0) return Verdict<V>{0, 0, none, none, none};
     const std::uint32_t certain =
         undecided & bits(edges.certainly_inside() & (t.t_lo > range.tmin) & (t.t_hi < range.accept_below()));
-    return FilterResult<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
+    return Verdict<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, edges.det()};
   }
 
   // For the occupied lanes.
   template <class V, class Axes, class Load, class Range>
   static DividedHit<V> test_loaded(const Ray<V, Axes>& ray, Load load, std::uint32_t occupied,
                                    const Range& range) {
-    const auto filtered = classify<false>(ray, load, occupied, [&] { return range; });
+    const auto verdict = classify<false>(ray, load, occupied, [&] { return range; });
     const std::uint32_t undecided =
-        Range::only_decides ? filtered.undecided : filtered.undecided | filtered.certain;
+        Range::only_decides ? verdict.undecided : verdict.undecided | verdict.certain;
     V zero(0.0f);
-    if (undecided == 0) return {MaskOf<V>::from_bits(filtered.certain), zero, zero, zero};
-    return decide(ray, load, range, undecided, filtered.certain & ~undecided);
+    if (undecided == 0) return {MaskOf<V>::from_bits(verdict.certain), zero, zero, zero};
+    return decide(ray, load, range, undecided, verdict.certain & ~undecided);
   }
 
   // Undecided lanes, of a ray that was prepared from its direction, and the certain ones. Out of line, with the

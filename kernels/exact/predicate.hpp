@@ -1,5 +1,5 @@
 // Whether a ray hits or crosses a triangle, and where, in exact arithmetic on the floats or doubles given. For what a
-// filter leaves undecided, because it is slow: a fifth of a microsecond; seven times that if exponents of floats lie
+// screen leaves undecided, because it is slow: a fifth of a microsecond; seven times that if exponents of floats lie
 // far apart, 200 times that if exponents of doubles do.
 #pragma once
 

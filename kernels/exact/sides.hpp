@@ -1,5 +1,5 @@
 // Which triangles count: all, or those that a caller chooses. The sign of the determinant is that of its three weights,
-// so that the filter of one side asks for weights of one sign: what floats are certain of is of that side, too.
+// so that the screen of one side asks for weights of one sign: what floats are certain of is of that side, too.
 #pragma once
 
 #include <bit>
@@ -21,12 +21,12 @@ template <class Triangles, class AnyRay>
   return detail::side_exactly(direction, corners);
 }
 
-// Whether a side counts: -1 is the front, 1 the back.
-inline bool counts(Facing facing, int side) {
+// Whether a side is admitted: -1 is the front, 1 the back.
+inline bool admits(Facing facing, int side) {
   return facing == Facing::any || (facing == Facing::front) == (side < 0);
 }
 // Leaves the lanes whose side counts; the lanes of `front` come to the front.
-inline std::uint32_t lanes_that_count(Facing facing, std::uint32_t lanes, std::uint32_t front) {
+inline std::uint32_t admitted_lanes(Facing facing, std::uint32_t lanes, std::uint32_t front) {
   return facing == Facing::any ? lanes : lanes & (facing == Facing::front ? front : ~front);
 }
 
@@ -47,15 +47,15 @@ inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const
   return lanes;
 }
 
-struct BothSides {
+struct NoRule {
   static constexpr bool chooses = false;
   static constexpr Facing facing = Facing::any;
-  BothSides() = default;
+  NoRule() = default;
   template <class Batch>
-  explicit BothSides(const Batch&, std::size_t = 0) {}
+  explicit NoRule(const Batch&, std::size_t = 0) {}
 
   template <class Triangles>
-  static std::uint32_t chosen(std::uint32_t lanes, const Triangles&, std::uint32_t) {
+  static std::uint32_t admitted(std::uint32_t lanes, const Triangles&, std::uint32_t) {
     return lanes;
   }
 
@@ -71,28 +71,28 @@ struct BothSides {
     return of_det;
   }
   template <class AnyHit, class Triangles, class AnyRay>
-  static const AnyHit& counted(const AnyHit& hit, const Triangles&, const AnyRay&, std::uint32_t) {
+  static const AnyHit& admitted_hit(const AnyHit& hit, const Triangles&, const AnyRay&, std::uint32_t) {
     return hit;
   }
 };
 
 // Triangles of one side, or both, but for the one that the ray skips.
-struct ChosenTriangles {
+struct HitRule {
   static constexpr bool chooses = true;
   Facing facing;
   std::uint32_t skipped = no_primitive;
 
   // For all rays of a batch, which skip nothing yet; for one.
-  explicit ChosenTriangles(const TraceBatch& batch) : facing(batch.facing) {}
-  ChosenTriangles(Facing side, std::uint32_t primitive) : facing(side), skipped(primitive) {}
+  explicit HitRule(const TraceBatch& batch) : facing(batch.facing) {}
+  HitRule(Facing side, std::uint32_t primitive) : facing(side), skipped(primitive) {}
   template <class T>
-  ChosenTriangles(const TraceBatchOf<T>& batch, std::size_t ray)
+  HitRule(const TraceBatchOf<T>& batch, std::size_t ray)
       : facing(batch.facing), skipped(skipped_by(batch, ray)) {}
   bool is_front() const { return facing == Facing::front; }
 
   // Lanes of triangles that begin with `first`.
   template <class Triangles>
-  std::uint32_t chosen(std::uint32_t lanes, const Triangles& triangles, std::uint32_t first) const {
+  std::uint32_t admitted(std::uint32_t lanes, const Triangles& triangles, std::uint32_t first) const {
     return lanes_but(skipped, lanes, triangles, first);
   }
 
@@ -108,36 +108,37 @@ struct ChosenTriangles {
   }
   // For a triangle that is not skipped.
   template <class Triangles>
-  Hit counted(const Hit& hit, const Triangles& triangles, const Ray& ray, std::uint32_t leaf_triangle) const {
+  Hit admitted_hit(const Hit& hit, const Triangles& triangles, const Ray& ray,
+                   std::uint32_t leaf_triangle) const {
     if (!hit || facing == Facing::any) return hit;
-    return counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
+    return admits(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
   }
 };
 
-// Whether a hit comes behind another one; null: behind none.
+// Whether a hit comes after another one; null: after none.
 template <class AnyHit>
-inline bool is_behind(const AnyHit& hit, const AnyHit* last) {
-  return last == nullptr || hit.t > last->t || (hit.t == last->t && hit.primitive > last->primitive);
+inline bool is_after(const AnyHit& hit, const AnyHit* after) {
+  return after == nullptr || hit.t > after->t || (hit.t == after->t && hit.primitive > after->primitive);
 }
 
-// The rule by which only hits behind one count, of triangles that the caller chooses.
+// The rule by which only hits after one count, of triangles that the caller chooses.
 template <class AnyHit>
-struct HitsBehind {
-  const AnyHit& last;
+struct HitsAfter {
+  const AnyHit& after;
   Facing facing;
   std::uint32_t skipped = no_primitive;
 
   // Lanes that floats are certain of, by their determinants; triangles begin with `first`.
   template <class V, class Triangles>
-  std::uint32_t chosen(std::uint32_t lanes, V det, const Triangles& triangles, std::uint32_t first) const {
-    return lanes_but(skipped, lanes_that_count(facing, lanes, bits(det > V(0.0f))), triangles, first);
+  std::uint32_t admitted(std::uint32_t lanes, V det, const Triangles& triangles, std::uint32_t first) const {
+    return lanes_but(skipped, admitted_lanes(facing, lanes, bits(det > V(0.0f))), triangles, first);
   }
 
   template <class Triangles, class AnyRay>
-  AnyHit counted(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
-                 std::uint32_t leaf_triangle) const {
-    if (!hit || !is_behind(hit, &last) || hit.primitive == skipped) return {};
-    return facing == Facing::any || counts(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
+  AnyHit admitted_hit(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
+                      std::uint32_t leaf_triangle) const {
+    if (!hit || !is_after(hit, &after) || hit.primitive == skipped) return {};
+    return facing == Facing::any || admits(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };
 

@@ -76,7 +76,7 @@ struct WalksCells {
   template <class Test, class Query, class Counters>
   static void walk(const TreeView& tree, const Ray& ray, Query& query, Counters& counters) {
     // Cells are not as flat as their triangles: no other walk would leave them out.
-    if constexpr (is_filtered<Test> && requires { query.beside; }) query.beside = never_beside;
+    if constexpr (screens<Test> && requires { query.beside; }) query.beside = never_beside;
     const TreeRay<Test, PaddedSlabs> prepared{LeafRay<Test>(ray, tree.bounds),
                                               padded_slabs<Test>(ray, tree.bounds)};
     KdEntry stack[max_kd_depth], *top = stack;

@@ -117,7 +117,7 @@ class FloatPoints {
   }
 
   // Corners in the units of BoxDistance.
-  struct Corners {
+  struct ScaledCorners {
     using V = Floats<node_lanes>;
     V scale;
 
@@ -131,7 +131,7 @@ class FloatPoints {
   struct Before {
     using V = Floats<node_lanes>;
     Vec3<V> scaled;
-    Corners corners;
+    ScaledCorners corners;
     Vec3<Doubles<half_of<node_lanes>>> exact;
 
     Before(const Place& point, const BoxDistance<node_lanes>& boxes)
@@ -160,7 +160,7 @@ class FloatPoints {
     PacketUnits(const FloatPoints&, const PointPacket& packet, const Box&, float scale)
         : packet_(packet), scale_(scale) {}
     V at(int axis, int first) const { return V::load(packet_.coordinate[axis] + first) * V(scale_); }
-    Corners corners() const { return {Floats<node_lanes>(scale_)}; }
+    ScaledCorners corners() const { return {Floats<node_lanes>(scale_)}; }
     double exact(int axis, std::uint32_t i) const { return static_cast<double>(packet_.coordinate[axis][i]); }
     // Points that were found, at least `count` of them.
     void bring(const float (&found)[3][packet_points], int count, float (&to)[3][packet_points]) const {

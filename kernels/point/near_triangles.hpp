@@ -93,11 +93,11 @@ class NearTriangles : public NearestChild<WaitingChild> {
   void take(const Triangles& corners, const Rows& rows, int first, std::uint32_t lanes,
             std::uint32_t triangle) {
     const auto [least, most, shortest_squared] = bounds_.bounds(rows, first);
-    FloatMask<node_lanes> counts = FloatMask<node_lanes>::from_bits(lanes);
-    if (!any(counts & (least <= V(tmax)))) return;
-    tmax = min_lane(select(counts & (most < V(tmax)) & (shortest_squared > V(0.0f)), most, V(tmax)));
+    FloatMask<node_lanes> valid = FloatMask<node_lanes>::from_bits(lanes);
+    if (!any(valid & (least <= V(tmax)))) return;
+    tmax = min_lane(select(valid & (most < V(tmax)) & (shortest_squared > V(0.0f)), most, V(tmax)));
     if (count_ > max_waiting - node_lanes) decide(corners);
-    FloatMask<node_lanes> waits = counts & (least <= V(tmax));
+    FloatMask<node_lanes> waits = valid & (least <= V(tmax));
     compress_store(min_ + count_, waits, as<std::uint32_t>(least));
     count_ += compress_store(triangle_ + count_, waits, Words(triangle) + Words::load(numbers));
   }

@@ -28,16 +28,16 @@ inline Vec3<Doubles<N>> doubles_of(const Point& point) {
 template <class T, class V>
 struct MeasuredTriangles {
   PointOnTriangle<V> on;
-  decltype(V() < V()) counts;
+  decltype(V() < V()) valid;
 
   MeasuredTriangles(const Vec3<V>& point, const Vec3<V>& v0, const Vec3<V>& v1, const Vec3<V>& v2) {
     TriangleEdges<V> edges = PointTriangle<V, Grade::reproducible>::set_up(v0, v1, v2);
     on = PointTriangle<V, Grade::reproducible>::closest(point, edges);
     if constexpr (std::is_same_v<T, float>)
-      counts = (edges.shortest_squared > V(0.0)) &
-               (edges.edges_squared < V(std::numeric_limits<double>::infinity()));
+      valid = (edges.shortest_squared > V(0.0)) &
+              (edges.edges_squared < V(std::numeric_limits<double>::infinity()));
     else
-      counts = on.distance_squared >= V(0.0);
+      valid = on.distance_squared >= V(0.0);
   }
 };
 
@@ -67,7 +67,7 @@ class NearestTriangle {
             const Triangles& triangles) {
     MeasuredTriangles<T, Doubles<N>> measured(point, v0, v1, v2);
     PointOnTriangle<Doubles<N>> h = measured.on;
-    lanes = lanes & bits((h.distance_squared <= Doubles<N>(distance_squared_)) & measured.counts);
+    lanes = lanes & bits((h.distance_squared <= Doubles<N>(distance_squared_)) & measured.valid);
     if (lanes == 0) return;
     double distance_squared[N], u[N], v[N];
     h.distance_squared.store(distance_squared), h.u.store(u), h.v.store(v);
@@ -104,7 +104,7 @@ class NearestTriangle {
     closest.distance_squared = distance_squared_;
     closest.point = {static_cast<T>(at.x.raw), static_cast<T>(at.y.raw), static_cast<T>(at.z.raw)};
     closest.u = static_cast<T>(u_), closest.v = static_cast<T>(v_), closest.primitive = primitive_;
-    if constexpr (std::is_same_v<T, double>) triangles.leave_units(closest);
+    if constexpr (std::is_same_v<T, double>) triangles.to_units_of_mesh(closest);
     return closest;
   }
 
@@ -145,9 +145,9 @@ template <int N, class T, class Triangles>
   MeasuredTriangles<T, Doubles<N>> measured(load(9), load(0), load(3), load(6));
   double distance_squared[N], u[N], v[N];
   measured.on.distance_squared.store(distance_squared), measured.on.u.store(u), measured.on.v.store(v);
-  std::uint32_t counts = bits(measured.counts) & first_lanes<N>(static_cast<std::size_t>(size));
-  for (; counts != 0; counts &= counts - 1) {
-    const int lane = std::countr_zero(counts);
+  std::uint32_t valid = bits(measured.valid) & first_lanes<N>(static_cast<std::size_t>(size));
+  for (; valid != 0; valid &= valid - 1) {
+    const int lane = std::countr_zero(valid);
     nearest[point[lane]].keep(distance_squared[lane], u[lane], v[lane], triangle[lane], triangles);
   }
 }

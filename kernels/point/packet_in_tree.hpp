@@ -139,9 +139,9 @@ class NearPacket : public NearestChild<WaitingBox> {
                                           in_units.corner(rows, 2, first));
     T error = multiply_add<Grade::fast>(edges.edges_squared, T(error_of_floats), T(units_.least_error)),
       infinity(std::numeric_limits<float>::infinity());
-    auto counts = FloatMask<node_lanes>::from_bits(lanes);
-    T below = select(counts, error, -infinity),
-      above = select(counts & (edges.shortest_squared > T(0.0f)), error, infinity);
+    auto valid = FloatMask<node_lanes>::from_bits(lanes);
+    T below = select(valid, error, -infinity),
+      above = select(valid & (edges.shortest_squared > T(0.0f)), error, infinity);
     Words names = Words(triangle) + Words::load(numbers);
     int count = count_;
     for (; points != 0; points &= points - 1) {

@@ -90,7 +90,7 @@ struct HitList {
       if (!hit) return false;
       const int side = batch.facing == Facing::any ? 0 : side_of(triangles, ray, leaf_triangle);
       // Hits that round to one t stay in the list.
-      return counts(batch.facing, side) && add(number_above(hit.t), side, leaf_triangle, hit.primitive);
+      return admits(batch.facing, side) && add(number_above(hit.t), side, leaf_triangle, hit.primitive);
     }
     const std::uint32_t primitive = triangles.primitive(leaf_triangle);
     if (batch.stop == ListStop::undecided) return stop_at(primitive);
@@ -99,25 +99,25 @@ struct HitList {
     const auto crossing = detail::cross_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
                                                 finite_tmax(ray.tmax));
     if (batch.stop == ListStop::at_origin && crossing.holds_origin) return stop_at(primitive);
-    return crossing.side != 0 && counts(batch.facing, crossing.side) &&
+    return crossing.side != 0 && admits(batch.facing, crossing.side) &&
            add(0, crossing.side, crossing.is_at_origin ? no_leaf_triangle : leaf_triangle, primitive,
                crossing.zero_weights);
   }
   // Lanes of a register that begins with `first`, with at least one certain or undecided. True ends the search.
-  template <class Tree, class AnyRay, class Filtered>
-  bool add_found(const Tree& tree, const AnyRay& ray, const Filtered& filtered, std::uint32_t first) {
-    using V = decltype(filtered.t_hi);
+  template <class Tree, class AnyRay, class AnyVerdict>
+  bool add_found(const Tree& tree, const AnyRay& ray, const AnyVerdict& verdict, std::uint32_t first) {
+    using V = decltype(verdict.t_hi);
     T t_hi[lanes_of<V>];
-    filtered.t_hi.store(t_hi);
-    const std::uint32_t against = bits(filtered.det > V(0.0f));
-    std::uint32_t found = filtered.certain | filtered.undecided;
+    verdict.t_hi.store(t_hi);
+    const std::uint32_t against = bits(verdict.det > V(0.0f));
+    std::uint32_t found = verdict.certain | verdict.undecided;
     if (batch.facing != Facing::any)
-      found = filtered.undecided | lanes_that_count(batch.facing, filtered.certain, against);
+      found = verdict.undecided | admitted_lanes(batch.facing, verdict.certain, against);
     const TrianglesOfRay<AnyRay> triangles(tree);
     for (std::uint32_t lanes = found; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(lane);
-      if ((filtered.undecided >> lane & 1u) != 0) [[unlikely]] {
+      if ((verdict.undecided >> lane & 1u) != 0) [[unlikely]] {
         if (add_undecided(triangles, ray, leaf_triangle)) return true;
         continue;
       }
@@ -141,15 +141,15 @@ template <class Test, class Tree, class AnyRay, class Prepared, class Load, clas
 requires requires(Query query) {
   query.store;
 }
-inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
+inline bool visit_screened(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
                            std::uint32_t occupied, std::uint32_t first, Query& query, Counters& counters) {
   using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
-  auto filtered = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
+  auto verdict = Test::template classify<true>(prepared.triangles, load, occupied, [&] {
     return Segment<V>{V(prepared.tmin), V(query.tmax)};
   });
-  if ((filtered.certain | filtered.undecided) == 0) return false;
-  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  return query.add_found(tree, ray, filtered, first);
+  if ((verdict.certain | verdict.undecided) == 0) return false;
+  counters.hits(verdict.certain), counters.undecided(verdict.undecided);
+  return query.add_found(tree, ray, verdict, first);
 }
 
 // The numbers of N entries of lists at a time: hits, or t of crossings. `ray` is that of the first one and moves along.

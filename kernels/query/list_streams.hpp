@@ -41,7 +41,7 @@ struct Heap {
         compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
   }
   // Leaves out entries that do not count, which rays together put there.
-  void leave_chosen() {
+  void keep_admitted() {
     if (facing == Facing::any && skip == nullptr) return;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < size; ++k) {
@@ -52,7 +52,7 @@ struct Heap {
   }
   // Empties a heap of sides into the counts.
   [[gnu::noinline]] void add_to_counts() {
-    leave_chosen();
+    keep_admitted();
     for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], (primitive[k] & sign) != 0);
     size = 0;
   }
@@ -60,7 +60,7 @@ struct Heap {
  private:
   bool counts_entry(std::size_t k) const {
     if (skip != nullptr && skip[ray[k]] == (primitive[k] & ~sign)) return false;
-    return raylanes::counts(facing, (primitive[k] & sign) != 0 ? -1 : 1);
+    return raylanes::admits(facing, (primitive[k] & sign) != 0 ? -1 : 1);
   }
   void overflow() {
     if (counts != nullptr)
@@ -102,7 +102,7 @@ class ListLeaves : public StreamOctant<Counters> {
               .packs_rays = true,
               .packs_lengths = true,
               .packs_numbers = true,
-              .scale = filter_scale<Test>(tree.bounds)},
+              .scale = screen_scale<Test>(tree.bounds)},
              tree, batch),
         batch_(batch) {}
 
@@ -115,15 +115,15 @@ class ListLeaves : public StreamOctant<Counters> {
     AllHits<RayOfHeap> query = batch_.list_of(static_cast<std::uint32_t>(number));
     WalksNodes::walk<Test>(tree_, ray, query, cost);
   }
-  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
-                                                   std::uint32_t size) {
-    this->each_lone(from, list, size,
-                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
-                      const std::uint32_t number = rays_.number[i];
-                      AllHits<RayOfHeap> query = batch_.list_of(number);
-                      trace<Test>(below, batch_.rays[number], this->template unpacked<Test>(i, boxes), query,
-                                  cost);
-                    });
+  [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
+                                                    std::uint32_t size) {
+    this->each_single(
+        from, list, size,
+        [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, Counters& cost) {
+          const std::uint32_t number = rays_.number[i];
+          AllHits<RayOfHeap> query = batch_.list_of(number);
+          trace<Test>(below, batch_.rays[number], this->template unpacked<Test>(i, boxes), query, cost);
+        });
   }
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
@@ -132,7 +132,7 @@ class ListLeaves : public StreamOctant<Counters> {
     const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
-    const LeafFilter filter(block, triangles, farthest_, needs_.scale);
+    const LeafScreen screen(block, triangles, farthest_, needs_.scale);
     for (std::uint32_t i = 0; i < size; i += stream_lanes) {
       const void *rows[stream_lanes], *ends[stream_lanes];
       for (int lane = 0; lane < stream_lanes; ++lane) {
@@ -147,12 +147,12 @@ class ListLeaves : public StreamOctant<Counters> {
       const auto going = FloatMask<stream_lanes>::first(size - i < stream_lanes ? size - i : stream_lanes);
       for (int triangle = 0; triangle < triangles; ++triangle) {
         counters().triangles(bits(going));
-        const auto filtered = filter.classify(rays, packed[6], triangle, segment);
-        const auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+        const auto verdict = screen.classify(rays, packed[6], triangle, segment);
+        const auto certain = verdict.certain & going, undecided = verdict.undecided & going;
         counters().hits(bits(certain)), counters().undecided(bits(undecided));
         const std::uint32_t leaf_triangle = leaf_triangle_of(leaf, triangle);
         // Without a branch: half of the registers have a hit, and nothing foretells which.
-        batch_.heap->put(certain, numbers, as<std::uint32_t>(-filtered.det), leaf_triangle,
+        batch_.heap->put(certain, numbers, as<std::uint32_t>(-verdict.det), leaf_triangle,
                          block.primitive[triangle]);
         if (any(undecided)) [[unlikely]]
           put_undecided(bits(undecided), list + i, leaf_triangle);
@@ -228,7 +228,7 @@ template <class Counters>
     heap.add_to_counts();
     return batch.size;
   }
-  heap.leave_chosen();
+  heap.keep_admitted();
   sort_by_rays(batch, heap);
   put_all_numbers(tree, batch, heap.size);
   return batch.size;

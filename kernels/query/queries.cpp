@@ -4,9 +4,9 @@
 #include "../traverse/transform.hpp"
 #include "../triangle/all_tests.hpp"
 #include "axis_ray.hpp"
+#include "hit_after.hpp"
 #include "hit_lists.hpp"
 #include "list_streams.hpp"
-#include "next_hit.hpp"
 #include "visit_packets.hpp"
 
 namespace raylanes {
@@ -19,7 +19,7 @@ constexpr QueryKernels kernels_with() {
   QueryKernels kernels{};
   kernels.list = list_all<WalksLists, AllHits<HitStore<float>>, Counters>;
   kernels.list_along_axes = list_all<WalksAlongAxes, HitsAsStored, Counters>;
-  kernels.next = next_hits<Counters>;
+  kernels.closest_after = hits_after<Counters>;
   kernels.visit = visit_boxes<Counters>;
   return kernels;
 }
@@ -27,18 +27,17 @@ constexpr QueryKernels kernels_with() {
 constexpr AllQueryKernels all_queries() {
   AllQueryKernels kernels{};
   kernels.plain = kernels_with<NoCounters>();
-  kernels.plain.chosen_single =
-      SingleRows<WalksNodes, NoCounters, ChosenTriangles>().template operator()<ExactTest>();
-  kernels.plain.chosen_stream = {closest_stream<ExactTest, NoCounters, ChosenTriangles>,
-                                 any_stream<ExactTest, NoCounters, ChosenTriangles>, OctantScratch::bytes};
-  kernels.plain.chosen_call = {closest_chosen<ExactTest>, any_chosen<ExactTest>, nearer_chosen<ExactTest>};
+  kernels.plain.ruled_single = SingleRows<WalksNodes, NoCounters, HitRule>().template operator()<ExactTest>();
+  kernels.plain.ruled_stream = {closest_stream<ExactTest, NoCounters, HitRule>,
+                                any_stream<ExactTest, NoCounters, HitRule>, OctantScratch::bytes};
+  kernels.plain.ruled_call = {closest_by_rule<ExactTest>, any_by_rule<ExactTest>, nearer_by_rule<ExactTest>};
   kernels.plain.kept = {closest_kept, any_kept};
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   if constexpr (RAYLANES_COUNTERS) {
     kernels.counted = kernels_with<CountTests>();
-    kernels.counted.chosen_single = {
-        kernels.counted.next, any_single<WalksNodes, ExactTest, CountTests, ChosenTriangles>, no_scratch};
+    kernels.counted.ruled_single = {kernels.counted.closest_after,
+                                    any_single<WalksNodes, ExactTest, CountTests, HitRule>, no_scratch};
   }
   kernels.map_rays = map_rays;
   return kernels;

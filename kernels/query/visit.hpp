@@ -24,8 +24,8 @@ struct VisitQuery : NearestFirst {
 };
 // Returns what is left of it then.
 template <class Boxes, class Counters>
-inline float visit_alone(const TreeView& tree, const VisitBatch& batch, const Boxes& boxes,
-                         std::uint32_t number, float tmax, Counters& counters) {
+inline float visit_single(const TreeView& tree, const VisitBatch& batch, const Boxes& boxes,
+                          std::uint32_t number, float tmax, Counters& counters) {
   VisitQuery query{{}, tmax};
   walk_nodes(tree, boxes, query, counters, [&](TreeReference leaf) {
     counters.leaf();
@@ -46,7 +46,7 @@ inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::ui
   Counters counters(batch);
   const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds,
                                                  tree.origin_share * largest_of(ray.origin) + tree.padding);
-  return visit_alone(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
+  return visit_single(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
 }
 
 // As StreamLeaves. The memory in which other streams keep leaf triangles and hits has the indices of a leaf's rays and
@@ -69,13 +69,14 @@ class VisitLeaves : public StreamOctant<Counters> {
   void trace_single(std::size_t number) {
     visit_single<Counters>(tree_, batch_, static_cast<std::uint32_t>(number), first_tmax(batch_, number));
   }
-  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
-                                                   std::uint32_t size) {
-    this->each_lone(from, list, size,
-                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
-                      float& tmax = rays_.rows[i].tmax;
-                      tmax = visit_alone(below, batch_, boxes, rays_.number[i], tmax, cost);
-                    });
+  [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
+                                                    std::uint32_t size) {
+    this->each_single(
+        from, list, size,
+        [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, Counters& cost) {
+          float& tmax = rays_.rows[i].tmax;
+          tmax = visit_single(below, batch_, boxes, rays_.number[i], tmax, cost);
+        });
   }
   [[gnu::noinline]] void visit_leaf(TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     std::uint32_t* const numbers = rays_.leaf_triangle;

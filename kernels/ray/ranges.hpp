@@ -38,7 +38,7 @@ inline Lanes<T, N> finite_tmax(Lanes<T, N> tmax) {
   return min(Lanes<T, N>(largest_t), tmax);
 }
 
-// From tmin to tmax, both finite. A filtered test calls:
+// From tmin to tmax, both finite. A test that screens calls:
 //   only_decides     whether hits are all that is wanted, not their numbers
 //   accept_below()   a hit whose upper bound of t is below this is nearer than the best one
 template <class V, bool only_decides_ = false>
@@ -62,7 +62,7 @@ struct SegmentToHit : Segment<V> {
   V accept_below() const { return t_lo; }
 };
 
-// The state of a vector of rays under a filtered test. Any hit ends a ray: then the state is the segment. For the
+// The state of a vector of rays under a test that screens. Any hit ends a ray: then the state is the segment. For the
 // nearest hit it has the candidate of each ray, too. Streams and packets load a state, each from memory of its own,
 // test triangles, and store it.
 template <class V, bool only_decides>

@@ -90,11 +90,11 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 template <class Test, class V, class Axes>
 using PreparedRayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
-// Whether a test is a filter (Shewchuk 1997): it decides first, with certainty or not, lane by lane, and the numbers of
+// Whether a test screens, as the filters of Shewchuk 1997 do: it decides first, with certainty or not, lane by lane, and the numbers of
 // a hit are computed later.
 template <class Test>
-inline constexpr bool is_filtered = requires {
-  Test::is_filtered;
+inline constexpr bool screens = requires {
+  Test::screens;
 };
 
 // Whether rays that share a point may take a hit's numbers from the planes through it and the edges of the triangle.
@@ -103,10 +103,10 @@ inline constexpr bool may_take_planes = requires {
   requires Test::may_take_planes;
 };
 
-// The result of a filter: the lanes with certain hits, and the lanes that floats leave undecided, as bits or as a mask.
+// The verdict of a screen: the lanes with certain hits, and the lanes that floats leave undecided, as bits or as a mask.
 // t_lo ≤ t ≤ t_hi for a certain hit.
 template <class V, class LaneSet = std::uint32_t>
-struct FilterResult {
+struct Verdict {
   LaneSet certain, undecided;
   V t_lo, t_hi;
   V det{};  // of certain hits: positive where the ray comes from the side of the normal
@@ -115,7 +115,7 @@ struct FilterResult {
 // For rays in a tree: `reach` is at least the distance along an axis from the origin to any corner.
 template <class Test, class V, class Axes>
 inline auto prepare_in_tree(const Vec3<V>& origin, const Vec3<V>& direction, const Axes& axes, V reach) {
-  if constexpr (is_filtered<Test>)
+  if constexpr (screens<Test>)
     return Test::prepare(origin, direction, axes, reach);
   else
     return Test::prepare(origin, direction, axes);

@@ -25,7 +25,7 @@ struct AnyInstance : AsStored {
 };
 
 // The tmax for hits before or at t, which may be infinite.
-inline float end_behind(float t) {
+inline float end_after(float t) {
   return t <= largest_t ? float_above(t < -largest_t ? -largest_t : t)
                         : std::numeric_limits<float>::infinity();
 }
@@ -116,7 +116,7 @@ class InstanceLeaves {
                               (entry.instance == best.instance && hit.primitive < best.primitive))));
     if (!wins) return false;
     best = {hit.t, hit.u, hit.v, hit.primitive, at.geometry, entry.instance};
-    const float end = end_behind(hit.t);
+    const float end = end_after(hit.t);
     query.tmax = end < query.tmax ? end : query.tmax;
     return false;
   }
@@ -215,7 +215,7 @@ template <class Query>
 
 [[maybe_unused]] void closest_of_instances(const InstancesView& scene, const Ray& ray, std::uint32_t mask,
                                            SceneHit& hit) {
-  const float end = end_behind(hit.t), own = finite_tmax(ray.tmax);
+  const float end = end_after(hit.t), own = finite_tmax(ray.tmax);
   NearestInstance query{{}, end < own ? end : own, hit};
   walk_instances(scene, ray, mask, query);
   hit = query.best;

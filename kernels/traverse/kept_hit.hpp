@@ -2,6 +2,7 @@
 // so far, once its numbers are known. So the walk goes on where a hit is rejected.
 #pragma once
 
+#include "../../dispatch/table/queries.hpp"
 #include "single.hpp"
 
 namespace raylanes {
@@ -49,16 +50,16 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
         ray_(ray) {}
 
   // The hits of a register that begins with `first`, at least one that is certain or undecided. True ends the search.
-  template <class Triangles, class FilterResult>
-  bool ask(const Triangles& triangles, const FilterResult& filtered, std::uint32_t first) {
-    constexpr int N = lanes_of<decltype(filtered.t_lo)>;
+  template <class Triangles, class Verdict>
+  bool ask(const Triangles& triangles, const Verdict& verdict, std::uint32_t first) {
+    constexpr int N = lanes_of<decltype(verdict.t_lo)>;
     T t_lo[N];
-    filtered.t_lo.store(t_lo);
-    for (std::uint32_t lanes = filtered.certain | filtered.undecided; lanes != 0;) {
+    verdict.t_lo.store(t_lo);
+    for (std::uint32_t lanes = verdict.certain | verdict.undecided; lanes != 0;) {
       const int lane = first_one ? std::countr_zero(lanes) : nearest_of(lanes, t_lo);
       lanes &= ~(1u << lane);
       if (t_lo[lane] > this->tmax) continue;
-      const bool is_certain = (filtered.certain >> lane & 1u) != 0;
+      const bool is_certain = (verdict.certain >> lane & 1u) != 0;
       if (look_at(triangles, first + static_cast<std::uint32_t>(lane), is_certain)) return true;
     }
     return beside > max_beside;
@@ -92,26 +93,26 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
       hit = exact_hit(triangles, ray_, leaf_triangle, along);
       if (!hit || !is_of_side(triangles, leaf_triangle)) return false;
     }
-    if (!is_better(hit.t, hit.primitive, best) || !is_behind(hit, asked.after) || !take(hit)) return false;
+    if (!is_better(hit.t, hit.primitive, best) || !is_after(hit, asked.after) || !take(hit)) return false;
     const bool has_ended = first_one || asked.any;
     if (has_ended) beside = 0;
     return has_ended;
   }
   template <class Triangles>
   bool is_of_side(const Triangles& triangles, std::uint32_t leaf_triangle) const {
-    return asked.facing == Facing::any || counts(asked.facing, side_of(triangles, ray_, leaf_triangle));
+    return asked.facing == Facing::any || admits(asked.facing, side_of(triangles, ray_, leaf_triangle));
   }
 
   const RayOf<T>& ray_;
 };
 
-// The begin of a search for what is behind a hit: infinity, if there is nothing.
+// The begin of a search for what comes after a hit: infinity, if there is nothing.
 template <class T>
-inline T begin_behind(const HitOf<T>* last, T tmin) {
-  if (last == nullptr) return tmin;
-  // Nothing is behind a miss, nor behind NaN.
-  if (!(last->t < std::numeric_limits<T>::infinity())) return std::numeric_limits<T>::infinity();
-  return last->t > tmin ? last->t : tmin;
+inline T begin_after(const HitOf<T>* after, T tmin) {
+  if (after == nullptr) return tmin;
+  // Nothing comes after a miss, nor after NaN.
+  if (!(after->t < std::numeric_limits<T>::infinity())) return std::numeric_limits<T>::infinity();
+  return after->t > tmin ? after->t : tmin;
 }
 
 }  // namespace

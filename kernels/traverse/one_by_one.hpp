@@ -71,72 +71,72 @@ struct TreeRay : LeafRay<Test> {
 };
 
 // Leaves the lanes of triangles that count.
-template <class Triangles, class FilterResult, class Sides>
-inline void leave_chosen(const Triangles& triangles, FilterResult& filtered, std::uint32_t leaf_triangle,
-                         const Sides& sides) {
-  filtered.certain = sides.chosen(filtered.certain, triangles, leaf_triangle);
-  filtered.undecided = sides.chosen(filtered.undecided, triangles, leaf_triangle);
+template <class Triangles, class Verdict, class Sides>
+inline void keep_admitted(const Triangles& triangles, Verdict& verdict, std::uint32_t leaf_triangle,
+                          const Sides& sides) {
+  verdict.certain = sides.admitted(verdict.certain, triangles, leaf_triangle);
+  verdict.undecided = sides.admitted(verdict.undecided, triangles, leaf_triangle);
 }
 
-// The triangles of a register, by a filtered test, for a query that keeps a candidate.
+// The triangles of a register, by a test that screens, for a query that keeps a candidate.
 template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
-inline bool visit_filtered(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
+inline bool visit_screened(const Tree& tree, const AnyRay& ray, const Prepared& prepared, Load load,
                            std::uint32_t occupied, std::uint32_t leaf_triangle, Query& query,
                            Counters& counters) {
   using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
-  auto filtered = Test::template classify<true>(
+  auto verdict = Test::template classify<true>(
       prepared.triangles, load, occupied,
       [&] {
         return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.t_lo)};
       },
       query.sides);
-  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
-  if ((filtered.certain | filtered.undecided) == 0) return false;
-  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  query.keep(tree, ray, filtered, leaf_triangle);
+  keep_admitted(TrianglesOfRay<AnyRay>(tree), verdict, leaf_triangle, query.sides);
+  if ((verdict.certain | verdict.undecided) == 0) return false;
+  counters.hits(verdict.certain), counters.undecided(verdict.undecided);
+  query.keep(tree, ray, verdict, leaf_triangle);
   return query.beside > max_beside;
 }
 template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
-requires(Query::only_decides && !asks<Query>) inline bool visit_filtered(const Tree& tree, const AnyRay& ray,
+requires(Query::only_decides && !asks<Query>) inline bool visit_screened(const Tree& tree, const AnyRay& ray,
                                                                          const Prepared& prepared, Load load,
                                                                          std::uint32_t occupied,
                                                                          std::uint32_t leaf_triangle,
                                                                          Query& query, Counters& counters) {
   using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
-  auto filtered = Test::template classify<true>(
+  auto verdict = Test::template classify<true>(
       prepared.triangles, load, occupied,
       [&] {
         return Segment<V, true>{V(prepared.tmin), V(query.tmax)};
       },
       query.sides);
-  if ((filtered.certain | filtered.undecided) == 0) return false;
-  leave_chosen(TrianglesOfRay<AnyRay>(tree), filtered, leaf_triangle, query.sides);
-  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  query.found = filtered.certain != 0;
-  if (!query.found && filtered.undecided != 0) [[unlikely]]
-    query.found = any_exact_hit(TrianglesOfRay<AnyRay>(tree), ray, filtered.undecided, leaf_triangle,
+  if ((verdict.certain | verdict.undecided) == 0) return false;
+  keep_admitted(TrianglesOfRay<AnyRay>(tree), verdict, leaf_triangle, query.sides);
+  counters.hits(verdict.certain), counters.undecided(verdict.undecided);
+  query.found = verdict.certain != 0;
+  if (!query.found && verdict.undecided != 0) [[unlikely]]
+    query.found = any_exact_hit(TrianglesOfRay<AnyRay>(tree), ray, verdict.undecided, leaf_triangle,
                                 query.sides.facing, &query.beside);
   return query.found || query.beside > max_beside;
 }
 
 // And for a query that asks a caller about each hit.
 template <class Test, class Tree, class AnyRay, class Prepared, class Load, class Query, class Counters>
-requires(asks<Query>) inline bool visit_filtered(const Tree& tree, const AnyRay&, const Prepared& prepared,
+requires(asks<Query>) inline bool visit_screened(const Tree& tree, const AnyRay&, const Prepared& prepared,
                                                  Load load, std::uint32_t occupied,
                                                  std::uint32_t leaf_triangle, Query& query,
                                                  Counters& counters) {
   using V = std::remove_cvref_t<decltype(prepared.triangles.shear_x)>;
-  auto filtered = Test::template classify<true>(
+  auto verdict = Test::template classify<true>(
       prepared.triangles, load, occupied,
       [&] {
         return SegmentToHit<V>{{V(prepared.tmin), V(query.tmax)}, V(query.segment_end)};
       },
       query.sides);
   const TrianglesOfRay<AnyRay> triangles(tree);
-  leave_chosen(triangles, filtered, leaf_triangle, query.sides);
-  if ((filtered.certain | filtered.undecided) == 0) return false;
-  counters.hits(filtered.certain), counters.undecided(filtered.undecided);
-  return query.ask(triangles, filtered, leaf_triangle);
+  keep_admitted(triangles, verdict, leaf_triangle, query.sides);
+  if ((verdict.certain | verdict.undecided) == 0) return false;
+  counters.hits(verdict.certain), counters.undecided(verdict.undecided);
+  return query.ask(triangles, verdict, leaf_triangle);
 }
 
 // The triangles of a leaf; true ends the search. Most leaves that a ray comes to hold no triangle that it passes
@@ -151,9 +151,9 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   for (int first = 0; first < size; first += node_lanes) {
     counters.triangles(first_lanes<node_lanes>(static_cast<std::size_t>(size - first)));
     const auto load = [&](int k) { return V::load(&block.number[prepared.axes.index(k)][first]); };
-    if constexpr (is_filtered<Test>) {
+    if constexpr (screens<Test>) {
       const std::uint32_t occupied = (2u << (size - first - 1)) - 1u;
-      if (visit_filtered<Test>(tree, ray, prepared, load, occupied, leaf_triangle_of(leaf, first), query,
+      if (visit_screened<Test>(tree, ray, prepared, load, occupied, leaf_triangle_of(leaf, first), query,
                                counters))
         return true;
     } else {
@@ -168,7 +168,7 @@ inline bool visit_leaf(const TreeView& tree, TreeReference leaf, const Ray& ray,
   return false;
 }
 
-template <class Walk, class Test, class Query, class Counters, class Sides = BothSides>
+template <class Walk, class Test, class Query, class Counters, class Sides = NoRule>
 inline Query trace_ray(const TreeView& tree, const Ray& ray, Counters& counters,
                        [[maybe_unused]] Sides sides = {}) {
   Query query = [&] {
@@ -217,14 +217,14 @@ inline void all_hits_of(const typename TrianglesOf<T>::type& triangles, const Tr
   hits_of_some<1>(triangles, batch, left, nearest);
 }
 
-template <class Walk, class Test, class Counters, class Sides = BothSides>
+template <class Walk, class Test, class Counters, class Sides = NoRule>
 [[gnu::flatten, gnu::noinline]] void closest_single(const TreeView& tree, const TraceBatch& batch) {
-  using Filtered = std::conditional_t<Sides::chooses, ChosenCandidate, ClosestCandidate>;
-  using Query = std::conditional_t<is_filtered<Test>, Filtered, Closest>;
+  using Candidates = std::conditional_t<Sides::chooses, RuledCandidate, ClosestCandidate>;
+  using Query = std::conditional_t<screens<Test>, Candidates, Closest>;
   if constexpr (flies<Walk, Test, Query, Counters>)
     if (Walk::takes(tree, batch)) return Walk::template closest<Test, Query, Sides>(tree, batch);
   Counters counters(batch);
-  if constexpr (is_filtered<Test>) {
+  if constexpr (screens<Test>) {
     const TreeTriangles triangles(tree);
     const auto nearest = [&](std::size_t i) {
       return closest_candidate<Walk, Test, Query>(tree, batch.rays[i], counters, Sides(batch, i));
@@ -236,9 +236,9 @@ template <class Walk, class Test, class Counters, class Sides = BothSides>
   }
 }
 
-template <class Walk, class Test, class Counters, class Sides = BothSides>
+template <class Walk, class Test, class Counters, class Sides = NoRule>
 [[gnu::flatten, gnu::noinline]] void any_single(const TreeView& tree, const TraceBatch& batch) {
-  using Query = std::conditional_t<Sides::chooses, ChosenAny, AnyHit>;
+  using Query = std::conditional_t<Sides::chooses, RuledAny, AnyHit>;
   if constexpr (flies<Walk, Test, Query, Counters>)
     if (Walk::takes(tree, batch)) return Walk::template any<Test, Query, Sides>(tree, batch);
   Counters counters(batch);
@@ -249,7 +249,7 @@ template <class Walk, class Test, class Counters, class Sides = BothSides>
 constexpr std::size_t no_scratch(std::size_t) {
   return 0;
 }
-template <class Walk, class Counters, class Sides = BothSides>
+template <class Walk, class Counters, class Sides = NoRule>
 struct SingleRows {
   template <class Test>
   constexpr TraversalRow operator()() const {

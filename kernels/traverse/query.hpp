@@ -8,7 +8,7 @@
 //   is_behind         whether an entry begins behind what is left
 //   descend           goes on with one of the children hit, at least one, and leaves the others on the stack
 //   take              the hits of a register of triangles, at least one; true ends the search
-//   sides             which triangles count, of filtered tests
+//   sides             which triangles count, of tests that screen
 #pragma once
 
 #include <bit>
@@ -37,7 +37,7 @@ struct NearestFirst {
     float t;  // where the ray enters the box
   };
   static constexpr bool only_decides = false;
-  static constexpr BothSides sides{};
+  static constexpr NoRule sides{};
 
   static Entry start(TreeReference root) { return {root, -largest_t}; }
   static TreeReference at(const Entry& entry) { return entry.reference; }
@@ -101,28 +101,28 @@ struct Closest : NearestFirst {
   }
 };
 
-// For a filtered test.
+// For a test that screens.
 struct ClosestCandidate : NearestFirst, Candidate {
   using Candidate::Candidate;
   explicit ClosestCandidate(const Candidate& best) : Candidate(best) {}
   float box_tmax() const { return tmax; }
 
   // The certain and undecided triangles of a register.
-  template <class FilterResult>
-  void keep(const TreeView& tree, const Ray& ray, const FilterResult& filtered, std::uint32_t first) {
-    keep_nearest(TreeTriangles(tree), ray, filtered, first, *this);
+  template <class Verdict>
+  void keep(const TreeView& tree, const Ray& ray, const Verdict& verdict, std::uint32_t first) {
+    keep_nearest(TreeTriangles(tree), ray, verdict, first, *this);
   }
   using Candidate::keep;
 };
-struct ChosenCandidate : ClosestCandidate {
-  ChosenTriangles sides;
+struct RuledCandidate : ClosestCandidate {
+  HitRule sides;
 
-  ChosenCandidate(const Ray& ray, ChosenTriangles chosen) : ChosenCandidate(Candidate(ray), chosen) {}
-  ChosenCandidate(const Candidate& best, ChosenTriangles chosen) : ClosestCandidate(best), sides(chosen) {}
+  RuledCandidate(const Ray& ray, HitRule chosen) : RuledCandidate(Candidate(ray), chosen) {}
+  RuledCandidate(const Candidate& best, HitRule chosen) : ClosestCandidate(best), sides(chosen) {}
 
-  template <class FilterResult>
-  void keep(const TreeView& tree, const Ray& ray, const FilterResult& filtered, std::uint32_t first) {
-    keep_nearest(TreeTriangles(tree), ray, filtered, first, *this, sides);
+  template <class Verdict>
+  void keep(const TreeView& tree, const Ray& ray, const Verdict& verdict, std::uint32_t first) {
+    keep_nearest(TreeTriangles(tree), ray, verdict, first, *this, sides);
   }
   using Candidate::keep;
 };
@@ -153,7 +153,7 @@ struct AsStored {
 // Any hit ends the search: those children come first that are likely to stop a ray.
 struct AnyHit : AsStored {
   static constexpr bool only_decides = true;
-  static constexpr BothSides sides{};
+  static constexpr NoRule sides{};
   float tmax;
   int beside = 0;  // as in Candidate
   bool found = false;
@@ -167,24 +167,24 @@ struct AnyHit : AsStored {
     return found = true;
   }
 };
-struct ChosenAny : AnyHit {
-  ChosenTriangles sides;
+struct RuledAny : AnyHit {
+  HitRule sides;
 
-  ChosenAny(const Ray& ray, ChosenTriangles chosen) : ChosenAny(finite_tmax(ray.tmax), chosen) {}
-  ChosenAny(float end, ChosenTriangles chosen) : AnyHit(end), sides(chosen) {}
+  RuledAny(const Ray& ray, HitRule chosen) : RuledAny(finite_tmax(ray.tmax), chosen) {}
+  RuledAny(float end, HitRule chosen) : AnyHit(end), sides(chosen) {}
 };
 
-// The query of a filtered test, from the state of a ray's search.
-inline ClosestCandidate nearest_of(const Candidate& best, BothSides) {
+// The query of a test that screens, from the state of a ray's search.
+inline ClosestCandidate nearest_of(const Candidate& best, NoRule) {
   return ClosestCandidate(best);
 }
-inline ChosenCandidate nearest_of(const Candidate& best, ChosenTriangles chosen) {
+inline RuledCandidate nearest_of(const Candidate& best, HitRule chosen) {
   return {best, chosen};
 }
-inline AnyHit any_within(float tmax, BothSides) {
+inline AnyHit any_within(float tmax, NoRule) {
   return AnyHit(tmax);
 }
-inline ChosenAny any_within(float tmax, ChosenTriangles chosen) {
+inline RuledAny any_within(float tmax, HitRule chosen) {
   return {tmax, chosen};
 }
 

@@ -58,7 +58,7 @@ inline void trace(const TreeView& tree, const Ray& ray, const Prepared& prepared
   walk_nodes(tree, prepared.nodes, query, counters, [&](TreeReference leaf) {
     return visit_leaf<Test>(tree, leaf, ray, prepared, query, counters);
   });
-  if constexpr (is_filtered<Test> && requires { query.beside; })
+  if constexpr (screens<Test> && requires { query.beside; })
     if (query.beside > max_beside) [[unlikely]]
       walk_beside<Test>(tree, ray, query, counters);
 }
@@ -74,15 +74,15 @@ template <class Test, class Query, class Counters>
 inline constexpr bool walks_fused = has_node_lanes&& std::is_same_v<Counters, NoCounters> &&
                                     (std::is_same_v<Query, ClosestCandidate> ||
                                      std::is_same_v<Query, Closest> || std::is_same_v<Query, AnyHit> ||
-                                     std::is_same_v<Query, ChosenCandidate> ||
-                                     std::is_same_v<Query, ChosenAny>);
+                                     std::is_same_v<Query, RuledCandidate> ||
+                                     std::is_same_v<Query, RuledAny>);
 
 #if defined(__AVX2__) && defined(__FMA__)
 // Rays that FusedRay leaves out: of trees far from zero, invalid ones, and those with unusual numbers.
 template <class Test, class Query>
 [[gnu::noinline, gnu::flatten]] void walk_unusual(const TreeView& tree, const Ray& ray, Query& query) {
   NoCounters counters(query);
-  if constexpr (is_filtered<Test>) {
+  if constexpr (screens<Test>) {
     if (is_valid(ray)) walk_beside<Test>(tree, ray, query, counters);
   } else {
     if (is_valid(ray)) walk_padded<Test>(tree, ray, query, counters);
@@ -91,7 +91,7 @@ template <class Test, class Query>
 // Goes on where walk_fused has ended because of triangles beside the ray.
 template <class Test, class Query>
 inline void walk_rest(const TreeView& tree, const Ray& ray, Query& query, bool has_ended) {
-  if constexpr (is_filtered<Test>)
+  if constexpr (screens<Test>)
     if (has_ended && query.beside > max_beside) [[unlikely]]
       walk_unusual<Test>(tree, ray, query);
 }
@@ -125,7 +125,7 @@ inline void walk_usual(const TreeView& tree, const Ray& ray, AnyHit& query) {
 
 struct Flights {
   template <class Test, class Query, class Counters>
-  static constexpr bool flies = is_filtered<Test>&& walks_fused<Test, Query, Counters>;
+  static constexpr bool flies = screens<Test>&& walks_fused<Test, Query, Counters>;
   static bool takes(const TreeView& tree, const TraceBatch& batch) {
     return tree.rays_wait && batch.size >= min_flights;
   }
@@ -154,7 +154,7 @@ struct WalksNodes : Flights {
   }
 };
 
-template <class Test, bool only_decides, class Counters, class Sides = BothSides>
+template <class Test, bool only_decides, class Counters, class Sides = NoRule>
 inline void trace_singles(const TreeView& tree, const TraceBatch& batch) {
   if constexpr (only_decides)
     any_single<WalksNodes, Test, Counters, Sides>(tree, batch);

@@ -36,7 +36,7 @@ class Stream {
       if (of_.needs_.shortens_rays && !is_new) at.size = without_late_ones(entries_ + at.begin, at.size);
       is_new = false;
       if (at.size < min_stream)
-        trace_alone(at);
+        trace_singly(at);
       else if (refers_to_leaf(at.reference))
         of_.calls_.visit_leaf(of_, at.reference, whole_registers(at), at.size);
       else
@@ -68,7 +68,7 @@ class Stream {
     const WideNode& node = tree_.nodes[at.reference];
     const std::uint32_t room = at.size + stream_lanes;
     if (at.end + std::size_t{tree_width} * room > max_entries_) {
-      trace_alone(at);
+      trace_singly(at);
       return false;
     }
     of_.counters().node();
@@ -130,8 +130,8 @@ class Stream {
     return top_ != base;
   }
 
-  void trace_alone(const WaitingList& at) {
-    of_.calls_.trace_alone(of_, at.reference, entries_ + at.begin, at.size);
+  void trace_singly(const WaitingList& at) {
+    of_.calls_.trace_singly(of_, at.reference, entries_ + at.begin, at.size);
   }
 
   StreamOctant<Counters>& of_;

@@ -26,13 +26,13 @@ struct OctantNode {
 };
 
 // The same for one ray against eight children at a time.
-struct LoneBoxes {
+struct SingleBoxes {
   using V = Floats<node_lanes>;
   V inverse[3], minus_scaled_origin[3], near_padding[3];
   int near_plane[3], far_plane[3];
   V tmin;
 
-  LoneBoxes(const StreamRow& row, int octant, float padding) : tmin(row.tmin) {
+  SingleBoxes(const StreamRow& row, int octant, float padding) : tmin(row.tmin) {
     for (int axis = 0; axis < 3; ++axis) {
       const bool negative = (octant >> axis & 1) != 0;
       inverse[axis] = V(row.inverse[axis]);

@@ -2,7 +2,7 @@
 // have hit so far.
 #pragma once
 
-#include "../exact/leaf_filter.hpp"
+#include "../exact/leaf_screen.hpp"
 #include "../ray/ranges.hpp"
 #include "single.hpp"
 #include "stream_hits.hpp"
@@ -10,40 +10,40 @@
 namespace raylanes {
 namespace {
 
-// Vectors of rays against the triangles of a leaf by a filter. Self keeps rays by their index in the octant:
+// Vectors of rays against the triangles of a leaf by a screen. Self keeps rays by their index in the octant:
 //   keep(i, t_lo, t_hi, leaf_triangle)   has a new best hit
 //   end_ray(i)                           is hit, if that is all that is asked
 //   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept
 //   is_hit(i, leaf_triangle)             whether the triangle is hit, exactly
-//   chosen(lanes, list, leaf_triangle)   the lanes for whose rays the triangle counts; if sides() chooses
+//   admitted(lanes, list, leaf_triangle)   the lanes for whose rays the triangle is admitted; if sides() chooses
 template <class Self, class V, bool only_decides>
-class FilteredRays {
+class ScreenedRays {
  protected:
   // In registers while triangles are tested: a load of what was just stored lane by lane waits for all stores before
   // it.
   using State = RayState<V, only_decides>;
 
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  template <class Filter>
-  void classify_triangles(const RayLanes<V>& rays, V length, const Filter& filter, int triangles,
+  template <class Screen>
+  void classify_triangles(const RayLanes<V>& rays, V length, const Screen& screen, int triangles,
                           std::uint32_t first, const ListEntry* list, std::uint32_t active, State& left) {
     auto going = MaskOf<V>::from_bits(active), found = going & ~going;
     for (int triangle = 0; triangle < triangles; ++triangle) {
       const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(triangle);
       self().counters().triangles(bits(going));
-      const auto filtered = filter.classify(rays, length, triangle, left, self().sides());
-      auto certain = filtered.certain & going, undecided = filtered.undecided & going;
+      const auto verdict = screen.classify(rays, length, triangle, left, self().sides());
+      auto certain = verdict.certain & going, undecided = verdict.undecided & going;
       if constexpr (decltype(self().sides())::chooses) {
-        const auto counts =
-            MaskOf<V>::from_bits(self().chosen(bits(certain | undecided), list, leaf_triangle));
-        certain = certain & counts, undecided = undecided & counts;
+        const auto admitted_by_rule =
+            MaskOf<V>::from_bits(self().admitted(bits(certain | undecided), list, leaf_triangle));
+        certain = certain & admitted_by_rule, undecided = undecided & admitted_by_rule;
       }
       self().counters().hits(bits(certain)), self().counters().undecided(bits(undecided));
       found = found | certain;
       if constexpr (only_decides) {
         going = going & ~certain;
       } else {
-        left.keep(certain, filtered.t_lo, filtered.t_hi, as_bits(leaf_triangle));
+        left.keep(certain, verdict.t_lo, verdict.t_hi, as_bits(leaf_triangle));
       }
       if (any(undecided)) [[unlikely]] {
         store_certain(bits(found), left, list);
@@ -99,13 +99,13 @@ class FilteredRays {
   }
 };
 
-template <class Test, bool only_decides, class Counters, class Sides = BothSides>
+template <class Test, bool only_decides, class Counters, class Sides = NoRule>
 class StreamLeaves
     : public StreamOctant<Counters>,
-      FilteredRays<StreamLeaves<Test, only_decides, Counters, Sides>, StreamFloats, only_decides> {
+      ScreenedRays<StreamLeaves<Test, only_decides, Counters, Sides>, StreamFloats, only_decides> {
   using Base = StreamOctant<Counters>;
-  using Filtered = FilteredRays<StreamLeaves, StreamFloats, only_decides>;
-  friend Filtered;
+  using Screened = ScreenedRays<StreamLeaves, StreamFloats, only_decides>;
+  friend Screened;
   using Base::farthest_, Base::needs_, Base::rays_, Base::tree_;
 
  public:
@@ -115,21 +115,21 @@ class StreamLeaves
       : Base(Base::template calls_of<StreamLeaves>,
              {.only_decides = only_decides,
               .packs_rays = true,
-              .packs_lengths = is_filtered<Test>,
-              .rounding = is_filtered<Test> ? 0.0f : slab_pad,
-              .scale = filter_scale<Test>(tree.bounds)},
+              .packs_lengths = screens<Test>,
+              .rounding = screens<Test> ? 0.0f : slab_pad,
+              .scale = screen_scale<Test>(tree.bounds)},
              tree, batch),
         batch_(batch) {}
 
   void begin() {
     for (std::uint32_t i = 0; i < rays_.size && !only_decides; ++i)
-      if constexpr (is_filtered<Test>)
+      if constexpr (screens<Test>)
         rays_.t_lo(i) = rays_.rows[i].tmax, rays_.leaf_triangle[i] = no_leaf_triangle;
       else
         rays_.hits[i] = Hit();
   }
   void store_results() {
-    if constexpr (is_filtered<Test> && !only_decides)
+    if constexpr (screens<Test> && !only_decides)
       StreamHits(tree_, batch_, rays_, needs_.scale).store();
     else if constexpr (!only_decides)
       for (std::uint32_t i = 0; i < rays_.size; ++i) batch_.hits[rays_.number[i]] = rays_.hits[i];
@@ -143,34 +143,35 @@ class StreamLeaves
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
-    const auto filter = filter_of(block, triangles);
+    const auto screen = screen_of(block, triangles);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
-      test_triangles(block, filter, triangles, leaf, list + i, size - i);
+      test_triangles(block, screen, triangles, leaf, list + i, size - i);
   }
 
-  [[gnu::noinline, gnu::flatten]] void trace_alone(TreeReference from, const ListEntry* list,
-                                                   std::uint32_t size) {
-    this->each_lone(from, list, size,
-                    [this](const TreeView& below, const LoneBoxes& boxes, std::uint32_t i, Counters& cost) {
-                      trace_lone(below, this->template unpacked<Test>(i, boxes), i, cost);
-                    });
+  [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
+                                                    std::uint32_t size) {
+    this->each_single(
+        from, list, size,
+        [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, Counters& cost) {
+          trace_single_below(below, this->template unpacked<Test>(i, boxes), i, cost);
+        });
   }
 
  private:
-  using State = typename Filtered::State;
+  using State = typename Screened::State;
 
   Sides sides() const { return Sides(batch_); }
   Sides sides(std::uint32_t i) const { return Sides(batch_, rays_.number[i]); }
 
   // A ray that goes on alone below a node.
   template <class Prepared>
-  void trace_lone(const TreeView& below, const Prepared& prepared, std::uint32_t i, Counters& cost) {
+  void trace_single_below(const TreeView& below, const Prepared& prepared, std::uint32_t i, Counters& cost) {
     const Ray& ray = batch_.rays[rays_.number[i]];
     if constexpr (only_decides) {
       auto query = any_within(rays_.rows[i].tmax, sides(i));
       trace<Test>(below, ray, prepared, query, cost);
       if (query.found) end_ray(i);
-    } else if constexpr (is_filtered<Test>) {
+    } else if constexpr (screens<Test>) {
       auto query = nearest_of(candidate_of(i), sides(i));
       trace<Test>(below, ray, prepared, query, cost);
       keep(i, query.t_lo, query.tmax, query.leaf_triangle);
@@ -224,7 +225,7 @@ class StreamLeaves
     Counters cost = counters();
     walk_beside<Test>(tree_, ray, query, cost);
   }
-  std::uint32_t chosen(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
+  std::uint32_t admitted(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
     if (batch_.skip == nullptr) return lanes;
     const std::uint32_t primitive = TreeTriangles(tree_).primitive(leaf_triangle);
     for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
@@ -234,18 +235,18 @@ class StreamLeaves
     return lanes;
   }
 
-  // The numbers of a leaf that all rays of a list share, for a test that has a filter.
-  auto filter_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
+  // The numbers of a leaf that all rays of a list share, for a test that has a screen.
+  auto screen_of([[maybe_unused]] const LeafBlock<Test::floats>& block,
                  [[maybe_unused]] int triangles) const {
-    if constexpr (is_filtered<Test>)
-      return LeafFilter(block, triangles, farthest_, needs_.scale);
+    if constexpr (screens<Test>)
+      return LeafScreen(block, triangles, farthest_, needs_.scale);
     else
       return 0;
   }
 
   // A register of rays, or the first `size`, against all triangles of a leaf.
-  template <class Filter>
-  void test_triangles(const LeafBlock<Test::floats>& block, const Filter& filter, int triangles,
+  template <class Screen>
+  void test_triangles(const LeafBlock<Test::floats>& block, const Screen& screen, int triangles,
                       TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     const void *rows[stream_lanes], *ends[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) {
@@ -258,9 +259,9 @@ class StreamLeaves
     left.tmin = columns[2], left.tmax = columns[3];
     if constexpr (!only_decides) left.t_lo = packed[row_floats - 1];
     std::uint32_t active = first_lanes<stream_lanes>(size);
-    if constexpr (is_filtered<Test>) {
+    if constexpr (screens<Test>) {
       const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
-      this->classify_triangles(rays, packed[6], filter, triangles, leaf_triangle_of(leaf, 0), list, active,
+      this->classify_triangles(rays, packed[6], screen, triangles, leaf_triangle_of(leaf, 0), list, active,
                                left);
     } else if constexpr (only_decides) {
       find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);

@@ -52,7 +52,7 @@ class StreamOctant {
     // The list may be read in whole registers.
     void (*visit_leaf)(StreamOctant&, TreeReference leaf, const ListEntry* list, std::uint32_t size);
     // Rays that go on alone.
-    void (*trace_alone)(StreamOctant&, TreeReference from, const ListEntry* list, std::uint32_t size);
+    void (*trace_singly)(StreamOctant&, TreeReference from, const ListEntry* list, std::uint32_t size);
     void (*store_results)(StreamOctant&);                     // the walk has ended
     void (*trace_single)(StreamOctant&, std::size_t number);  // a ray of the batch that no stream takes
     void (*prefetch_leaf)(StreamOctant&, TreeReference);      // null: blocks of corners
@@ -65,8 +65,8 @@ class StreamOctant {
     calls.visit_leaf = [](StreamOctant& of, TreeReference leaf, const ListEntry* list, std::uint32_t size) {
       static_cast<Leaves&>(of).visit_leaf(leaf, list, size);
     };
-    calls.trace_alone = [](StreamOctant& of, TreeReference from, const ListEntry* list, std::uint32_t size) {
-      static_cast<Leaves&>(of).trace_alone(from, list, size);
+    calls.trace_singly = [](StreamOctant& of, TreeReference from, const ListEntry* list, std::uint32_t size) {
+      static_cast<Leaves&>(of).trace_singly(from, list, size);
     };
     calls.store_results = [](StreamOctant& of) { static_cast<Leaves&>(of).store_results(); };
     calls.trace_single = [](StreamOctant& of, std::size_t number) {
@@ -96,18 +96,18 @@ class StreamOctant {
 
   // trace(below, boxes, i, cost) for each ray of a list, from a node or a leaf on.
   template <class Trace>
-  void each_lone(TreeReference from, const ListEntry* list, std::uint32_t size, Trace trace) {
+  void each_single(TreeReference from, const ListEntry* list, std::uint32_t size, Trace trace) {
     TreeView below = tree_;
     below.root = from;
     Counters cost = counters();
     for (std::uint32_t k = 0; k < size; ++k) {
       const std::uint32_t i = index_of(list[k]);
-      trace(below, LoneBoxes(rays_.rows[i], octant_, padding_), i, cost);
+      trace(below, SingleBoxes(rays_.rows[i], octant_, padding_), i, cost);
     }
   }
   // A packed ray again as a test of triangles wants it.
   template <class Test>
-  TreeRay<Test, LoneBoxes> unpacked(std::uint32_t i, const LoneBoxes& boxes) const {
+  TreeRay<Test, SingleBoxes> unpacked(std::uint32_t i, const SingleBoxes& boxes) const {
     const auto numbers = [&](int first) {
       const float back = 1.0f / needs_.scale, *const xyz = rays_.packed[i] + first;
       return Float3{xyz[0] * back, xyz[1] * back, xyz[2] * back};

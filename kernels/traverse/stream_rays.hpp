@@ -27,7 +27,7 @@ static_assert(sizeof(StreamRow) == row_floats * sizeof(float) && sizeof(Ray) == 
 
 // The numbers of a ray for triangles, as the test packs them.
 using PackedRow = float[row_floats];
-// Filtered tests leave this one free: for the lower bound of the best hit's t, or for the ray's number in the batch.
+// Tests that screen leave this one free: for the lower bound of the best hit's t, or for the ray's number in the batch.
 inline constexpr int free_column = row_floats - 1;
 
 // Places for the rays of an octant: in arrays, with room for a register more.
@@ -35,15 +35,15 @@ struct OctantRays {
   StreamRow* rows;
   PackedRow* packed;
   std::uint32_t* number;         // of the ray in the batch
-  std::uint32_t* leaf_triangle;  // of the best hit, for filtered tests
+  std::uint32_t* leaf_triangle;  // of the best hit, for tests that screen
   Hit* hits;                     // of others: the batch's lie far apart
   std::uint32_t size;
 
-  // The lower bound of the best hit's t, for filtered tests.
+  // The lower bound of the best hit's t, for tests that screen.
   float& t_lo(std::uint32_t i) const { return packed[i][free_column]; }
 };
 
-// In very small and very large scenes floats would flush or leave out what a filter computes: there rays and triangles
+// In very small and very large scenes floats would flush or leave out what a screen computes: there rays and triangles
 // are multiplied by a power of two first.
 inline float extent_of(const Box& bounds) {
   float extent = 0.0f;
@@ -54,9 +54,9 @@ inline float extent_of(const Box& bounds) {
   return extent;
 }
 template <class Test>
-inline float filter_scale(const Box& bounds) {
+inline float screen_scale(const Box& bounds) {
   const float extent = extent_of(bounds);
-  return !is_filtered<Test> ? 1.0f : extent < 0x1p-15f ? 0x1p30f : extent > 0x1p20f ? 0x1p-30f : 1.0f;
+  return !screens<Test> ? 1.0f : extent < 0x1p-15f ? 0x1p30f : extent > 0x1p20f ? 0x1p-30f : 1.0f;
 }
 
 // Rays that boxes can be tested against by reciprocals without a thought, because nothing overflows: all but those with

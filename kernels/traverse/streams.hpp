@@ -140,13 +140,13 @@ class Streams {
   StreamFloats farthest_{0.0f};  // of the rays taken so far
 };
 
-template <class Test, class Counters, class Sides = BothSides>
+template <class Test, class Counters, class Sides = NoRule>
 void closest_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, false, Counters, Sides>(tree, batch);
   StreamLeaves<Test, false, Counters, Sides> leaves(tree, batch);
   Streams(leaves, batch.scratch).trace();
 }
-template <class Test, class Counters, class Sides = BothSides>
+template <class Test, class Counters, class Sides = NoRule>
 void any_stream(const TreeView& tree, const TraceBatch& batch) {
   if (tree.root == empty_reference) return trace_singles<Test, true, Counters, Sides>(tree, batch);
   __builtin_memset(batch.occluded, 0, batch.size);

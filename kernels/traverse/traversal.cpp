@@ -13,7 +13,7 @@ namespace {
 template <class Counters>
 struct PacketRows {
   template <class Fast>
-  static constexpr bool has_fast_code = (has_fma && !is_filtered<Fast>) || may_take_planes<Fast>;
+  static constexpr bool has_fast_code = (has_fma && !screens<Fast>) || may_take_planes<Fast>;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {trace_packets<Test, false, Counters>, trace_packets<Test, true, Counters>, packet_bytes<Test>};
@@ -23,7 +23,7 @@ template <class Counters>
 struct StreamRows {
   // Fused, the watertight test gains 1 % in streams, in the middle of six scenes by three sets of rays; packets, 5 %.
   template <class Fast>
-  static constexpr bool has_fast_code = has_fma && !is_filtered<Fast> && Fast::id != TriangleTest::watertight;
+  static constexpr bool has_fast_code = has_fma && !screens<Fast> && Fast::id != TriangleTest::watertight;
   template <class Test>
   constexpr TraversalRow operator()() const {
     return {closest_stream<Test, Counters>, any_stream<Test, Counters>, OctantScratch::bytes};
@@ -32,7 +32,7 @@ struct StreamRows {
 
 [[maybe_unused]] std::uint32_t nearest_triangle(const TreeView& tree, const Ray& ray) {
   return closest_candidate<WalksNodes, Exact<Grade::reproducible>, ClosestCandidate>(
-      tree, ray, NoCounters(tree), BothSides());
+      tree, ray, NoCounters(tree), NoRule());
 }
 
 // put(rows, tests, make) fills the rows of a mode; rays that are traced together by the tests of `Batch`.

@@ -29,11 +29,11 @@ template <class Test>
   });
 }
 
-// A filtered test may need the numbers again, and loads them itself: kept for that they would take the registers of
+// A test that screens may need the numbers again, and loads them itself: kept for that they would take the registers of
 // the loop. It decides the lanes of occupied() and no others: other lanes would be undecided.
 template <class Test, class Ray, class Load, class Range, class Occupied>
 inline auto test_lanes(const Ray& ray, Load load, const Range& range, Occupied occupied) {
-  if constexpr (is_filtered<Test>)
+  if constexpr (screens<Test>)
     return Test::test_loaded(ray, load, occupied(), range);
   else
     return test_triangle<Test>(ray, load, range);
@@ -56,7 +56,7 @@ class RayOverTriangles {
     return test_lanes<Test>(
         ray_, [&](int k) { return slice.load(number_[k]); }, range, [&] { return slice.taken(); });
   }
-  // For a filtered test.
+  // For a test that screens.
   template <class Slice, class Range>
   auto classify(const Slice& slice, const Range& range) const {
     return Test::template classify<false>(
@@ -117,7 +117,7 @@ template <class Test>
   return best.nearest();
 }
 
-// For a filtered test: a leaf triangle is an index.
+// For a test that screens: a leaf triangle is an index.
 struct ArrayTriangles {
   Soa corners;
   float number(int k, std::uint32_t leaf_triangle) const { return corners[k][leaf_triangle]; }
@@ -133,9 +133,9 @@ template <class Test>
   F tmin(finite_tmin(ray.tmin));
   Candidate nearest(ray);
   for_each_slice(0, n, active, [&](const auto& slice) {
-    auto filtered = over.classify(slice, SegmentToHit<F>{{tmin, F(nearest.tmax)}, F(nearest.t_lo)});
-    if ((filtered.certain | filtered.undecided) == 0) return;
-    keep_nearest(triangles, ray, filtered, static_cast<std::uint32_t>(slice.i), nearest);
+    auto verdict = over.classify(slice, SegmentToHit<F>{{tmin, F(nearest.tmax)}, F(nearest.t_lo)});
+    if ((verdict.certain | verdict.undecided) == 0) return;
+    keep_nearest(triangles, ray, verdict, static_cast<std::uint32_t>(slice.i), nearest);
   });
   if (nearest.leaf_triangle != no_leaf_triangle) hit = known_hit(triangles, ray, nearest.leaf_triangle);
 }
@@ -144,7 +144,7 @@ template <class Test>
 void closest_of_triangles(const Ray& ray, Soa triangles, std::size_t n, LaneBits active, Hit& nearest) {
   nearest = Hit();
   if (!is_valid(ray)) return;
-  if constexpr (is_filtered<Test>) {
+  if constexpr (screens<Test>) {
     detail::RayAmong prepared;
     prepared.ray = ray;
     prepare_for_triangles(ray.direction, prepared);

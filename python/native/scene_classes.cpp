@@ -15,7 +15,7 @@ void closest_in_scene(const SharedScene& shared, const py::object& rays, const p
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
   options.mask = mask;
-  options.after = hits_behind<SceneHit>(after);
+  options.after = hits_after<SceneHit>(after);
   filtered_query<SceneHit>(shared, options, how[how_progress], from.count, filter,
                            [&](const Scene& scene, const TraceOptions& heard, const auto&... filters) {
                              scene.closest(from, to, filters..., heard);
@@ -29,7 +29,7 @@ void crossing_in_scene(const SharedScene& shared, const py::object& rays, const 
   const auto to = writable_records_of<SceneHit>(hits);
   auto options = trace_options<float>(how, active, from.count);
   options.mask = mask;
-  options.after = hits_behind<SceneHit>(after);
+  options.after = hits_after<SceneHit>(after);
   query(shared, options, how[how_progress], from.count,
         [&](const Scene& scene, const TraceOptions& heard) { scene.closest_crossing(from, to, heard); });
 }
@@ -131,8 +131,8 @@ void bind_scenes(py::module_& module) {
   using Mask = std::uint32_t;
   constexpr RayLists<SceneHit> (SurfaceQueries<Scene>::*hits)(RayView, const ListOptions&) const =
       &Scene::all_hits;
-  constexpr RayLists<SceneCrossing> (SurfaceQueries<Scene>::*passages)(RayView, const ListOptions&) const =
-      &Scene::crossings;
+  constexpr RayLists<SceneCrossing> (SurfaceQueries<Scene>::*crossings_of_rays)(RayView, const ListOptions&)
+      const = &Scene::crossings;
   constexpr RayLists<SceneStretch> (*within)(const Scene&, RayView, const ListOptions&) = &stretches;
   auto scene = bind_shared<SharedScene>(module, "Scene");
   def_constructor(scene, empty_scene);
@@ -157,7 +157,7 @@ void bind_scenes(py::module_& module) {
       .def("occluded", occluded_in_scene)
       .def("occluded_from", shadows_in_scene)
       .def("all_hits", lists<SharedScene, hits, Mask>)
-      .def("crossings", lists<SharedScene, passages, Mask>)
+      .def("crossings", lists<SharedScene, crossings_of_rays, Mask>)
       .def("stretches", lists<SharedScene, within, Mask>)
       .def("count_crossings", count_crossings<SharedScene, Mask>)
       .def("bounds", [](const SharedScene& shared) { return corners_of(shared.state->bounds()); })

@@ -88,7 +88,7 @@ inline void closest_spheres(const SharedSpheres& shared, const py::object& rays,
   const RaysOf<float> from(rays);
   const auto to = hits_of<float>(hits);
   auto options = visit_options(how, active, from.count);
-  options.after = hits_behind<Hit>(after);
+  options.after = hits_after<Hit>(after);
   filtered_query<Hit>(shared, options, how[how_progress], from.count, filter,
                       [&](const SphereState& state, const VisitOptions& heard, const auto&... filters) {
                         state.tree.closest(from, to, filters..., heard);

@@ -102,9 +102,9 @@ inline PrimitiveView skips_of(const py::object& rows) {
           columns == 2 ? std::ptrdiff_t{index} : 0};
 }
 
-// The hits behind which rays look for the next; None: none.
+// The hits after which rays look for the next; None: none.
 template <class AnyHit>
-HitRecords<AnyHit> hits_behind(const py::object& after) {
+HitRecords<AnyHit> hits_after(const py::object& after) {
   if (after.is_none()) return {};
   const Rows rows = rows_of(after.cast<py::array>(), sizeof(AnyHit));
   return {rows.first, rows.count, rows.stride};
@@ -163,7 +163,7 @@ void closest(const SharedTree<T>& shared, const py::object& rays, const py::arra
   const RaysOf<T> from(rays);
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
-  options.after = hits_behind<HitOf<T>>(after);
+  options.after = hits_after<HitOf<T>>(after);
   filtered_query<HitOf<T>>(shared, options, how[how_progress], from.count, filter,
                            [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
                              tree.closest(from, to, filters..., heard);
@@ -176,7 +176,7 @@ void closest_crossing(const SharedTree<T>& shared, const py::object& rays, const
   const RaysOf<T> from(rays);
   const auto to = hits_of<T>(hits);
   auto options = trace_options<T>(how, active, from.count);
-  options.after = hits_behind<HitOf<T>>(after);
+  options.after = hits_after<HitOf<T>>(after);
   query(shared, options, how[how_progress], from.count,
         [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_crossing(from, to, heard); });
 }
@@ -217,9 +217,9 @@ void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, co
 // The corners of triangles by index, as rows of nine numbers.
 template <class T>
 void corners(const SharedTree<T>& shared, const py::array& primitives, const py::array& to) {
-  using Corners = std::conditional_t<std::is_same_v<T, double>, TriangleD, Triangle>;
+  using TriangleNumbers = std::conditional_t<std::is_same_v<T, double>, TriangleD, Triangle>;
   const auto names = span_of<std::uint32_t>(primitives);
-  const std::span triangles(reinterpret_cast<Corners*>(span_of<T>(to).data()), names.size());
+  const std::span triangles(reinterpret_cast<TriangleNumbers*>(span_of<T>(to).data()), names.size());
   query(shared, [&](const TreeOf<T>& tree) { tree.corners(names, triangles); });
 }
 

@@ -34,7 +34,7 @@ void bind_queries(py::module_& module, const char* name) {
   using Rays = RayRecords<RayOf<T>>;
   using Surfaces = SurfaceQueries<TreeOf<T>>;
   constexpr RayLists<HitOf<T>> (Surfaces::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
-  constexpr RayLists<CrossingOf<T>> (Surfaces::*passages)(Rays, const ListOptions&) const =
+  constexpr RayLists<CrossingOf<T>> (Surfaces::*crossings_of_rays)(Rays, const ListOptions&) const =
       &TreeOf<T>::crossings;
   constexpr RayLists<StretchRecord<T>> (*within)(const TreeOf<T>&, Rays, const ListOptions&) = &stretches;
   py::class_<SharedTree<T>>(module, name)
@@ -44,7 +44,7 @@ void bind_queries(py::module_& module, const char* name) {
       .def("occluded_from", occluded_from<T>)
       .def("corners", corners<T>)
       .def("all_hits", lists<SharedTree<T>, hits>)
-      .def("crossings", lists<SharedTree<T>, passages>)
+      .def("crossings", lists<SharedTree<T>, crossings_of_rays>)
       .def("stretches", lists<SharedTree<T>, within>)
       .def("count_crossings", count_crossings<SharedTree<T>>)
       .def("locate", locate<T>)

@@ -21,10 +21,10 @@ scene_hit_dtype = np.dtype([("t", "<f4"), ("u", "<f4"), ("v", "<f4"), ("primitiv
 """A hit in a scene: a hit_dtype, and what was hit; a miss has no_part twice."""
 
 crossing_dtype = np.dtype([("t", "<f4"), ("primitive", "<u4"), ("side", "<i4")])
-"""A passage through the surface; side 1 along the normal, out of a solid, -1 against it."""
+"""A crossing of the surface; side 1 along the normal, out of a solid, -1 against it."""
 
 scene_crossing_dtype = np.dtype([*crossing_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
-"""A passage through the surface of an instance: a crossing_dtype, and whose."""
+"""A crossing of the surface of an instance: a crossing_dtype, and whose."""
 
 double_ray_dtype = np.dtype(
     [("origin", "<f8", 3), ("tmin", "<f8"), ("direction", "<f8", 3), ("tmax", "<f8")])
@@ -35,7 +35,7 @@ double_hit_dtype = np.dtype({"names": ["t", "u", "v", "primitive"], "formats": [
 """A hit of float64; otherwise as hit_dtype."""
 
 double_crossing_dtype = np.dtype([("t", "<f8"), ("primitive", "<u4"), ("side", "<i4")])
-"""A passage of a ray of float64; otherwise as crossing_dtype."""
+"""A crossing of a ray of float64; otherwise as crossing_dtype."""
 
 stretch_dtype = np.dtype([("entry", "<f4"), ("exit", "<f4"), ("entered_by", "<u4"), ("left_by", "<u4"),
                           ("winding", "<i4")])

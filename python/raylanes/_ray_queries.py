@@ -3,7 +3,7 @@
 import numpy as np
 
 from ._arrays import given_rays
-from ._traces import (counted, filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards,
+from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
                       skipped)
 from ._warn import warn_of_sides
 from .hits import Crossings, Hits, Stretches
@@ -96,7 +96,7 @@ class RayQueries:
         rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, hits_behind(after, answer), self._filter(filter)))
+            given, answer.rows, asked, bits, hits_after(after, answer), self._filter(filter)))
 
     def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, out=None, active=None,
                          after=None, mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
@@ -111,7 +111,7 @@ class RayQueries:
         rays, origins, directions, tmin, tmax, out, active, mode, hint, facing, skip, threads, progress
             As in closest(), by the test "exact".
         after : Hits, optional
-            For each ray a hit: the result is the next passage behind it, in the order of t, then of primitives.
+            For each ray a hit: the result is the closest crossing after it, in the order of t, then of primitives.
 
         Returns
         -------
@@ -128,7 +128,7 @@ class RayQueries:
         rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = how("exact", "reproducible", mode, hint, self._sides(facing), threads, progress, skipped(skip))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
-            given, answer.rows, asked, bits, hits_behind(after, answer)))
+            given, answer.rows, asked, bits, hits_after(after, answer)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
                  active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",

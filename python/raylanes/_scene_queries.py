@@ -4,7 +4,7 @@ import numpy as np
 
 from ._arrays import SCENES, given_rays, unsigned
 from ._scalars import count
-from ._traces import (counted, filter_of, hits_behind, how, listed, nearest, shadows, shadows_from, shadows_towards,
+from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
                       skipped_in_scene)
 from .scene_hits import SceneCrossings, SceneHits, SceneStretches
 
@@ -76,7 +76,7 @@ class SceneQueries:
         asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer), filter_of(filter, SceneHits)))
+            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer), filter_of(filter, SceneHits)))
 
     def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                          after=None, out=None, active=None, facing="any", skip=None, threads=0, progress=None):
@@ -90,7 +90,7 @@ class SceneQueries:
         rays, origins, directions, tmin, tmax, mask, active, facing, skip, threads, progress
             As in closest().
         after : SceneHits, optional
-            For each ray a hit: the result is the next passage behind it.
+            For each ray a hit: the result is the closest crossing after it.
         out : ndarray, optional
             The array to write to, of the shape and dtype of the result; it may be `after` itself.
 
@@ -114,7 +114,7 @@ class SceneQueries:
         asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
         bits_of_mask = _mask(mask)
         return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
-            given, answer.rows, asked, bits, bits_of_mask, hits_behind(after, answer)))
+            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
                  out=None, active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",

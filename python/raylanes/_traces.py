@@ -100,8 +100,8 @@ def skipped_in_scene(skip):
     return np.stack([given["primitive"].reshape(-1), given["instance"].reshape(-1)], axis=-1)
 
 
-def hits_behind(after, answer):
-    """The rows of hits behind which the next are asked for: rows of `out` itself, or a copy. None stays None."""
+def hits_after(after, answer):
+    """The rows of hits after which the next are asked for: rows of `out` itself, or a copy. None stays None."""
     if after is None:
         return None
     hits, dtype, shape = np.asarray(after), answer.array.dtype, answer.array.shape

@@ -6,7 +6,7 @@ from . import _native
 from ._arrays import DOUBLES, FLOATS, given_rays, numbers, numbers_for, require_kept, vertices_of
 from ._scalars import threads_of, word
 from ._stored import Copied
-from ._traces import filter_of, hits_behind, how, nearest, shadows, shadows_from, shadows_towards, skipped
+from ._traces import filter_of, hits_after, how, nearest, shadows, shadows_from, shadows_towards, skipped
 from .hits import Hits
 
 
@@ -139,7 +139,7 @@ class SphereTree(Copied):
         rays = given_rays(rays, origins, directions, tmin, tmax)
         asked = _asked(threads, progress, skip)
         return nearest(FLOATS, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, hits_behind(after, answer), filter_of(filter, Hits, FLOATS.hit)))
+            given, answer.rows, asked, bits, hits_after(after, answer), filter_of(filter, Hits, FLOATS.hit)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
                  active=None, skip=None, threads=0, progress=None):

@@ -132,7 +132,7 @@ void filters() {
 void geometries_apart() {
   const auto none = [](const RTCFilterFunctionNArguments* a) { std::fill(a->valid, a->valid + a->N, 0); };
   for (const bool are_spheres : {false, true})
-    for (const bool is_filtered : {false, true}) {
+    for (const bool gives_verdicts : {false, true}) {
       RTCGeometry g[3];
       for (unsigned i = 0; i < 3; ++i) {
         const float z = -3 * static_cast<float>(i);
@@ -140,7 +140,7 @@ void geometries_apart() {
                            : triangles_of({0, 0, z, 1, 0, z, 0, 1, z});
         rtcSetGeometryMask(g[i], 1u << i);
       }
-      if (is_filtered) {
+      if (gives_verdicts) {
         rtcSetGeometryIntersectFilterFunction(g[0], none);
         rtcSetGeometryOccludedFilterFunction(g[0], none);
       }

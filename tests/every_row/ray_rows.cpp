@@ -148,7 +148,7 @@ void check_visits(EveryRow& every, const QueryKernels& kernels, std::size_t byte
   TraceCounters counters;
   TraceBatch closest;
   closest.rays = rays.data(), closest.size = most, closest.hits = hits.data(), closest.counters = &counters;
-  kernels.next(tree, closest);
+  kernels.closest_after(tree, closest);
   std::vector<std::set<std::uint32_t>> seen(most);
   Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
   VisitBatch batch;
@@ -171,7 +171,7 @@ void check_visits(EveryRow& every, const QueryKernels& kernels, std::size_t byte
 }
 
 // A ray in a call of its own; and the triangle of its hit, found again from its t on.
-Tracer<float> by_chosen_calls(const ChosenCallRow& row, const TreeView& tree) {
+Tracer<float> by_chosen_calls(const RuledCallRow& row, const TreeView& tree) {
   return by_calls<float>(
       [&row, tree](const Ray& ray, const TraceBatch& batch, std::size_t i) {
         const Hit hit = row.closest(tree, ray, batch.facing, skipped_by(batch, i));
@@ -193,28 +193,28 @@ void check_queries(EveryRow& every, const QueryKernels& kernels, const Traversal
   const TreeView tree = small_view<float>();
   const std::string way = counts ? "counted " : "";
   for (const auto& [name, row] :
-       {std::pair("single", &kernels.chosen_single), std::pair("stream", &kernels.chosen_stream)}) {
+       {std::pair("single", &kernels.ruled_single), std::pair("stream", &kernels.ruled_stream)}) {
     every.offers(row->any), every.offers(row->scratch_bytes);
     if (every.offers(row->closest))
       expect_hits<float>("chosen", Rules::chosen, by_batches(tree, *row), way + name, counts);
   }
-  if (every.offers(kernels.chosen_call.closest) && every.offers(kernels.chosen_call.any) &&
-      every.offers(kernels.chosen_call.nearer)) {
-    expect_hits<float>("chosen", Rules::chosen, by_chosen_calls(kernels.chosen_call, tree), "calls");
+  if (every.offers(kernels.ruled_call.closest) && every.offers(kernels.ruled_call.any) &&
+      every.offers(kernels.ruled_call.nearer)) {
+    expect_hits<float>("chosen", Rules::chosen, by_chosen_calls(kernels.ruled_call, tree), "calls");
     const TraversalRow& packets = traversal.mode[static_cast<std::size_t>(TraversalMode::packet)]
                                       .row[static_cast<std::size_t>(TriangleTest::exact)][0];
     expect_hits<float>(
         "chosen", Rules::chosen,
         [&](TraceBatch batch) {
-          batch.chosen = &kernels.chosen_call;
+          batch.chosen = &kernels.ruled_call;
           by_batches(tree, packets)(batch);
         },
         "packets");
   }
   check_kept<float>(every, kernels.kept, tree);
-  if (every.offers(kernels.next))
-    expect_hits<float>("behind", Rules::behind, by_batches<float>(tree, kernels.next, nullptr), way + "next",
-                       counts);
+  if (every.offers(kernels.closest_after))
+    expect_hits<float>("behind", Rules::behind, by_batches<float>(tree, kernels.closest_after, nullptr),
+                       way + "next", counts);
   every.offers(kernels.scratch_bytes);  // asked for by list_together
   check_lists<float>(every, kernels.list, tree, way + "list", nullptr, counts);
   check_lists<float>(every, kernels.list_together, tree, way + "list_together", kernels.scratch_bytes,

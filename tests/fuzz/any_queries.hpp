@@ -70,9 +70,9 @@ class AnyQueries {
     expect_lists(
         tree, rays_, expected,
         {.max_count = max_count_, .facing = facing, .path = path, .threads = threads_, .skip = skip});
-    expect_passages(tree, mesh_, rays_, options);
+    expect_closest_crossings(tree, mesh_, rays_, options);
     expect_kept(tree, rays_, expected.hits, options);
-    expect_next_hits(tree, rays_, expected, path, facing, skip);
+    expect_hits_after(tree, rays_, expected, path, facing, skip);
   }
 
  private:
@@ -82,8 +82,8 @@ class AnyQueries {
 
   template <class Tree>
   void expect_order(const Tree& tree, const Options& options) const {
-    std::vector<HitOf<T>> passages(rays_.size());
-    tree.closest_crossing(rays_, passages, options);
+    std::vector<HitOf<T>> closest_crossings(rays_.size());
+    tree.closest_crossing(rays_, closest_crossings, options);
     const auto hits =
         tree.all_hits(rays_, {.max_count = max_count_, .facing = facing, .path = path, .skip = skip});
     const auto crossings = tree.crossings(rays_, {.max_count = max_count_, .path = path});

@@ -5,7 +5,7 @@
 
 #include "../queries/summed_winding.hpp"
 #include "../support/limited_memory.hpp"
-#include "any_passages.hpp"
+#include "any_closest_crossings.hpp"
 
 namespace raylanes::testing {
 
@@ -69,8 +69,8 @@ void expect_lists(const Tree& tree, const std::vector<AnyRay>& rays, const Expec
 
 // All layers, one after the other, in place.
 template <class Tree, class AnyRay, class T = std::remove_const_t<decltype(AnyRay::tmin)>>
-void expect_next_hits(const Tree& tree, const std::vector<AnyRay>& rays, const ExpectedLists<T>& expected,
-                      const Path* path, Facing facing, const PrimitiveView& skip) {
+void expect_hits_after(const Tree& tree, const std::vector<AnyRay>& rays, const ExpectedLists<T>& expected,
+                       const Path* path, Facing facing, const PrimitiveView& skip) {
   static Fence fence(max_queries * sizeof(HitOf<T>));
   const std::span<HitOf<T>> hits(fence.last<HitOf<T>>(rays.size()), rays.size());
   std::fill(hits.begin(), hits.end(), HitOf<T>{-std::numeric_limits<T>::infinity(), 0, 0, 0});

@@ -51,13 +51,13 @@ auto skipping(const std::vector<AnyRay>& rays, const std::vector<Skip>& skip, co
     }
   };
 }
-// Asks a tree or a scene for hits, or for passages.
+// Asks a tree or a scene for hits, or for closest crossings.
 template <class Tree, class AnyRay, class Skip>
 auto hits_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
   return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest(call...); });
 }
 template <class Tree, class AnyRay, class Skip>
-auto passages_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
+auto closest_crossings_of(const Tree& tree, const std::vector<AnyRay>& rays, const std::vector<Skip>& skip) {
   return skipping(rays, skip, [&tree](auto&&... call) { return tree.closest_crossing(call...); });
 }
 // all_of(ray) gives the expected answers.

@@ -106,9 +106,9 @@ template <class AnyHit, class Tree, class Rays, class Points, class Point, class
 void trace_all(const Tree& tree, const Rays& rays, const Points& points, const Point& from, Options options) {
   PagedArray<AnyHit> hits, next;
   PagedArray<std::uint8_t> occluded(9);
-  const HitRecords<AnyHit> out(hits.data(), all), behind_hits(next.data(), all);
+  const HitRecords<AnyHit> out(hits.data(), all), hits_after(next.data(), all);
   tree.closest(rays, out, options);
-  tree.closest(rays, behind_hits, reject_some, options);
+  tree.closest(rays, hits_after, reject_some, options);
   tree.occluded(rays, occluded.span(), options);
   tree.occluded(rays, occluded.span(), reject_some, options);
   tree.occluded_towards(from, points, occluded.span(), options);
@@ -117,7 +117,7 @@ void trace_all(const Tree& tree, const Rays& rays, const Points& points, const P
   tree.occluded_from(from, points, occluded.span(), reject_some, {}, options);
   PagedArray<AnyHit>::each([&](std::size_t i) { ASSERT_LE(occluded[i], 1); });
   options.after = out;
-  tree.closest(rays, behind_hits, options);
+  tree.closest(rays, hits_after, options);
   std::size_t found = 0;
   PagedArray<AnyHit>::each([&](std::size_t i) { found += hits[i] ? 1 : 0; });
   EXPECT_GT(found, 20u);

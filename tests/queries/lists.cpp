@@ -76,11 +76,11 @@ TYPED_TEST(Lists, do_not_depend_on_how_rays_come) {
     const auto some = tree.all_hits(arrays, {.threads = 2, .active = active});
     std::vector<CrossingCount> of_some(rays.size(), {77, 78});
     tree.count_crossings(arrays, of_some, {.active = active});
-    std::vector<HitOf<T>> hits(rays.size(), untouched), of_arrays = hits, passages = hits;
+    std::vector<HitOf<T>> hits(rays.size(), untouched), of_arrays = hits, closest_crossings = hits;
     std::vector<std::uint8_t> occluded(rays.size(), 7), dark_arrays = occluded;
     tree.closest(rays, hits, {.threads = 2, .active = active});
     tree.closest(arrays, of_arrays, {.active = active});
-    tree.closest_crossing(arrays, passages, {.active = active});
+    tree.closest_crossing(arrays, closest_crossings, {.active = active});
     tree.occluded(rays, occluded, {.threads = 2, .active = active});
     tree.occluded(arrays, dark_arrays, {.active = active});
     EXPECT_TRUE(same_bytes(hits, of_arrays));
@@ -90,7 +90,7 @@ TYPED_TEST(Lists, do_not_depend_on_how_rays_come) {
       ASSERT_TRUE(same_bytes(some[i], is_active ? all[i] : all[i].first(0))) << i;
       ASSERT_EQ(of_some[i], is_active ? counts[i] : (CrossingCount{77, 78})) << i;
       ASSERT_TRUE(same_bytes(hits[i], is_active ? nearest[i] : untouched)) << i;
-      ASSERT_TRUE(same_bytes(passages[i], is_active ? passed[i] : untouched)) << i;
+      ASSERT_TRUE(same_bytes(closest_crossings[i], is_active ? passed[i] : untouched)) << i;
       ASSERT_EQ(occluded[i], is_active ? (nearest[i] ? 1 : 0) : 7) << i;
     }
   }

@@ -1,6 +1,6 @@
 // Every query of scenes of triangles, of all primitives, of one side of them, and of all but one for each ray: what the
 // trees of instances return for mapped rays, in the order of t, then instance, then primitive.
-#include "../oracles/passage_oracle.hpp"
+#include "../oracles/closest_crossing_oracle.hpp"
 #include "../queries/query_trees.hpp"
 #include "expect_queries.hpp"
 #include "in_order/lattice_scenes.hpp"
@@ -8,7 +8,7 @@
 namespace raylanes::testing {
 namespace {
 
-// Returns how many hits are no passages.
+// Returns how many hits are no crossings.
 std::size_t expect_every_query(const Scene& scene, const std::vector<Ray>& rays) {
   std::size_t touched = 0, skipped = 0;
   for (const Expected& expected :
@@ -21,7 +21,7 @@ std::size_t expect_every_query(const Scene& scene, const std::vector<Ray>& rays)
     });
     skipped += expected.skipped;
     for (std::size_t i = 0; i < rays.size(); ++i)
-      touched += expected.hits[i].size() - expected.passages[i].size();
+      touched += expected.hits[i].size() - expected.closest_crossings[i].size();
   }
   EXPECT_GT(skipped, rays.size() / 40);
   on_each_path([&](const Path* path, int threads) {

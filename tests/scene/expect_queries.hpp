@@ -23,7 +23,7 @@ struct Expected {
   Facing facing;
   std::uint32_t mask;
   std::vector<SceneHit> skip;
-  std::vector<std::vector<SceneHit>> hits, passages;
+  std::vector<std::vector<SceneHit>> hits, closest_crossings;
   std::size_t skipped = 0;
 
   Expected(const Scene& scene, const std::vector<Ray>& rays, Facing side, std::uint32_t of_mask, bool skips)
@@ -35,7 +35,7 @@ struct Expected {
       skipped += std::erase_if(of_ray, [&](const SceneHit& hit) {
         return hit.instance == without.instance && hit.primitive == without.primitive;
       });
-      passages.push_back(all_scene_hits_by(
+      closest_crossings.push_back(all_scene_hits_by(
           scene, ray, mask, [&](std::uint32_t geometry, const Ray& mapped, std::uint32_t instance) {
             const std::uint32_t in_tree = instance == without.instance ? without.primitive : no_primitive;
             std::vector<Hit> all;
@@ -80,12 +80,15 @@ inline void expect_queries(const Scene& scene, const std::vector<Ray>& rays, con
   scene.closest_crossing(rays, hits, masked);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool is_active = (active[i / 8] >> i % 8 & 1) != 0;
-    const auto& passages = expected.passages[i];
+    const auto& closest_crossings = expected.closest_crossings[i];
     EXPECT_TRUE(same_bytes(some[i], is_active ? nearest[i] : SceneHit())) << i;
-    EXPECT_TRUE(same_bytes(hits[i], !is_active ? odd[i] : passages.empty() ? SceneHit() : passages[0])) << i;
+    EXPECT_TRUE(same_bytes(hits[i], !is_active                  ? odd[i]
+                                    : closest_crossings.empty() ? SceneHit()
+                                                                : closest_crossings[0]))
+        << i;
   }
   expect_peeled(rays, expected.hits, options, hits_of(scene, rays, expected.skip));
-  expect_peeled(rays, expected.passages, options, passages_of(scene, rays, expected.skip));
+  expect_peeled(rays, expected.closest_crossings, options, closest_crossings_of(scene, rays, expected.skip));
 }
 
 }  // namespace raylanes::testing

@@ -45,17 +45,17 @@ inline void expect_hits_of_boxes(Bytes& bytes, const Mesh& mesh, std::span<const
   std::vector<Hit> one_by_one(rays.size()), by_leaves(rays.size());
   tree.closest(rays, one_by_one, test, options);
   tree.closest(rays, by_leaves, leaf_test, options);
-  std::vector<Hit> behind(rays.size()), behind_by_leaves(rays.size());
+  std::vector<Hit> behind(rays.size()), after_by_leaves(rays.size());
   VisitOptions second = options;
   second.after = one_by_one;
   tree.closest(rays, behind, test, second);
-  tree.closest(rays, behind_by_leaves, leaf_test, second);
+  tree.closest(rays, after_by_leaves, leaf_test, second);
   const Bvh triangles(mesh);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Hit expected = triangles.closest(rays[i], {.path = &paths().front()}),
               next = triangles.closest(rays[i], {.path = &paths().front(), .after = expected});
     if (!same_bytes(one_by_one[i], expected) || !same_bytes(by_leaves[i], expected) ||
-        !same_bytes(behind[i], next) || !same_bytes(behind_by_leaves[i], next))
+        !same_bytes(behind[i], next) || !same_bytes(after_by_leaves[i], next))
       fail("boxes: ray " + std::to_string(i) + " on " + options.path->name);
   }
 }
@@ -103,7 +103,7 @@ inline void expect_hits_of_spheres(Bytes& bytes, std::span<const Ray> rays, cons
     for (; last; --found) {
       behind.after = last;
       const Hit next = tree.closest(ray, behind);
-      if (found == 0 || (next && !is_behind(next, last))) return complain();
+      if (found == 0 || (next && !comes_after(next, last))) return complain();
       last = next;
     }
     if (found != 0) complain();

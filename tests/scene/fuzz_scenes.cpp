@@ -64,8 +64,8 @@ std::vector<Ray> from_one_origin(Bytes& bytes, const std::vector<Ray>& rays) {
 }
 
 // Behind the nearest hit there is the second one of all, on any path.
-void expect_next(const Scene& scene, const std::vector<Ray>& rays, const std::vector<SceneHit>& nearest,
-                 const TraceOptions& options) {
+void expect_after(const Scene& scene, const std::vector<Ray>& rays, const std::vector<SceneHit>& nearest,
+                  const TraceOptions& options) {
   std::vector<SceneHit> hits = nearest;
   scene.closest(rays, hits, behind(options, hits));
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -97,8 +97,8 @@ void expect_skips_apart(Bytes& bytes, const Scene& scene, const std::vector<Ray>
   scene.normals(expected, normals);
 }
 
-// The first passage of a scene is that of one of its instances, by their own trees.
-void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options) {
+// The closest crossing of a scene is that of one of its instances, by their own trees.
+void expect_closest_crossings(const Scene& scene, const std::vector<Ray>& rays, const TraceOptions& options) {
   std::vector<SceneHit> hits(rays.size());
   scene.closest_crossing(rays, hits, options);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -108,7 +108,7 @@ void expect_passages(const Scene& scene, const std::vector<Ray>& rays, const Tra
                                                         {.path = &paths().front(), .facing = options.facing});
         });
     if (!same_bytes(hits[i], expected))
-      fail("passage: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
+      fail("closest crossing: ray " + std::to_string(i) + " on " + options.path->name + ": " + text(hits[i]));
   }
 }
 
@@ -254,9 +254,9 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
         }));
   }
   expect_same(scene, rays, expected, options);
-  if (bytes.chance(64)) expect_next(scene, rays, expected, options);
+  if (bytes.chance(64)) expect_after(scene, rays, expected, options);
   if (bytes.chance(64)) expect_skips_apart(bytes, scene, rays, expected, options);
-  if (bytes.chance(64)) expect_passages(scene, rays, options);
+  if (bytes.chance(64)) expect_closest_crossings(scene, rays, options);
   if (bytes.chance(32)) expect_lists(scene, rays, options);
   if (bytes.chance(16)) expect_stretches(scene, rays, options);
   if (bytes.chance(64))

@@ -49,11 +49,11 @@ class SphereArraysOf : public ::testing::Test {
   static constexpr std::size_t most = 40;
 
   void ask_one_by_one(const SphereVariant& variant) {
-    alone_.clear(), by_line_.clear();
+    singles_.clear(), by_line_.clear();
     for (std::size_t i = 0; i < most; ++i) {
       const std::span<const Sphere> sphere(&scene_.primitives[i], 1);
       by_line_.push_back(line_answers(*variant.path, variant.grade, {&scene_.rays[0], 1}, sphere)[0]);
-      alone_.push_back(closest_answer(variant, scene_.rays[0], sphere));
+      singles_.push_back(closest_answer(variant, scene_.rays[0], sphere));
     }
   }
 
@@ -72,15 +72,15 @@ class SphereArraysOf : public ::testing::Test {
       const bool takes_part = active == nullptr || is_set({active, (n + 7) / 8}, i);
       ASSERT_EQ(line.is_hit(i), takes_part ? by_line_[i] : before.is_hit(i)) << name << " sphere " << i;
       ASSERT_EQ(of_invalid.is_hit(i), takes_part ? false : before.is_hit(i)) << name << " sphere " << i;
-      if (takes_part && alone_[i] && alone_[i].t < nearest.t)
-        nearest = {alone_[i].t, 0, 0, static_cast<std::uint32_t>(i)};
+      if (takes_part && singles_[i] && singles_[i].t < nearest.t)
+        nearest = {singles_[i].t, 0, 0, static_cast<std::uint32_t>(i)};
     }
     ASSERT_TRUE(line.are_intact() && of_invalid.are_intact()) << name;
     ASSERT_TRUE(same_bytes(found, nearest)) << name;
   }
 
   SphereScene scene_ = scene_of_many<SphereTest>(most);
-  std::vector<Hit> alone_;
+  std::vector<Hit> singles_;
   std::vector<bool> by_line_;
 };
 

@@ -187,7 +187,7 @@ TYPED_TEST(Stretches, have_the_lengths_of_exact_arithmetic) {
   each_tree_of_boxes<TypeParam>([&](const auto& tree) {
     for (const Path* path : paths_with_own_queries())
       this->expect_right(stretches(tree, this->rays, {.path = path, .threads = 2}));
-    // Rays with passages of one rounded t, whose order is that of primitives.
+    // Rays with crossings of one rounded t, whose order is that of primitives.
     const auto crossings = tree.crossings(this->rays);
     std::size_t with_equal = 0;
     for (std::size_t i = 0; i < this->rays.size(); ++i)

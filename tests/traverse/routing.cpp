@@ -30,7 +30,7 @@ Mesh small_triangles(bool with_large_ones) {
 }
 
 StreamSizes sizes_of(const Bvh& bvh) {
-  return TreeOf::traced(bvh).view.streams_from;
+  return TreeAccess::traced(bvh).view.streams_from;
 }
 void expect_sizes(const Bvh& bvh, const StreamSizes& expected, const char* name) {
   EXPECT_EQ(sizes_of(bvh).closest, expected.closest) << name;
@@ -142,7 +142,7 @@ TEST(Routing, estimates_how_many_triangles_a_ray_has) {
         const KernelTable& kernels = kernels_of(paths().front());
         const double expected = 2.0 * cells * cells / (side * side),
                      found =
-                         triangles_of_a_ray<float>(TreeOf::traced(bvh).view,
+                         triangles_of_a_ray<float>(TreeAccess::traced(bvh).view,
                                                    kernels.traversal.nearest_triangle, rays, shared, point)
                              .mean,
                      of_doubles = triangles_of_a_ray<double>(far_away(square_of(cells)).view(),
@@ -159,7 +159,7 @@ TEST(Routing, estimates_how_many_triangles_a_ray_has) {
 // Views without triangles, and rays without numbers.
 TEST(Routing, estimates_something_of_any_rays) {
   const Bvh bvh(square_of(10));
-  const TreeView view = TreeOf::traced(bvh).view;
+  const TreeView view = TreeAccess::traced(bvh).view;
   const auto nearest = kernels_of(paths().front()).traversal.nearest_triangle;
   for (const float x : {0.0f, nan, infinity, 1e38f, 1e-45f})
     for (const std::size_t n : {3u, 64u, 4096u})

@@ -53,15 +53,15 @@ TYPED_TEST(PreparedCalls, follow_what_options_refer_to) {
   const auto rays = rays_for(mesh, 200, 94);
   const auto tree = built<TypeParam>(mesh);
   auto here = tree.closest(rays[0]);
-  OptionsOf<TypeParam> skips, looks_behind;
-  skips.skip = here.primitive, looks_behind.after = {&here, 1};
-  const auto without = tree.calls(skips), behind = tree.calls(looks_behind);
+  OptionsOf<TypeParam> skips, has_after;
+  skips.skip = here.primitive, has_after.after = {&here, 1};
+  const auto without = tree.calls(skips), behind = tree.calls(has_after);
   std::size_t others = 0;
   for (const auto& ray : rays) {
     here = tree.closest(ray);
     EXPECT_TRUE(same_bytes(without.closest(ray), tree.closest(ray, skips)));
     EXPECT_EQ(without.occluded(ray), tree.occluded(ray, skips));
-    EXPECT_TRUE(same_bytes(behind.closest(ray), tree.closest(ray, looks_behind)));
+    EXPECT_TRUE(same_bytes(behind.closest(ray), tree.closest(ray, has_after)));
     others += without.closest(ray).primitive != here.primitive ? 1u : 0u;
   }
   EXPECT_GT(others, 50u);

@@ -5,7 +5,7 @@
 #include <raylanes/ray_queries.hpp>
 
 #include "../../batch/few_rays.hpp"
-#include "../next.hpp"
+#include "../after.hpp"
 
 namespace raylanes {
 
@@ -122,7 +122,7 @@ bool RayQueries<Tree>::any_kept(const Ray& ray, const detail::Rejection<Hit>& re
   return door.any_kept(ray, rejection, by);
 }
 
-// A batch whose hits a filter turns down. Hits behind those turned down come from lists, where there are some.
+// A batch whose hits a filter turns down. Hits after those turned down come from lists, where there are some.
 template <class Tree>
 class FilteredCall {
   using Number = typename RayQueries<Tree>::Number;

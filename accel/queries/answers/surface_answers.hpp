@@ -1,28 +1,28 @@
-// The text of SurfaceQueries, for every class: passages, all hits, crossings. Each class has a
+// The text of SurfaceQueries, for every class: closest crossings, all hits, crossings. Each class has a
 // SurfaceDoor of its own, in the class's file.
 #pragma once
 
 #include <raylanes/ray_queries.hpp>
 
 #include "../../../dispatch/quiet_floats.hpp"
-#include "../passages.hpp"
+#include "../crossing_judge.hpp"
 #include "../ray_lists.hpp"
 
 namespace raylanes {
 
 // How a class answers for surfaces. It is made of the object, and has
-//   require_passages(options)   throws if these options have no passages
-//   judge(options)              what says of a ray, its skipped primitive and a hit whether the hit is a passage
+//   require_closest_crossing(options)   throws if these options have no closest crossings
+//   judge(options)              what says of a ray, its skipped primitive and a hit whether the hit is a crossing
 //   hits(rays, options), crossings(rays, options), count(rays, counts, options)
 template <class Tree>
 struct SurfaceDoor;
 
-// The nearest hits, of which those that are no passages give way to the next ones.
+// The nearest hits, of which those that are no crossings give way to the hits after them.
 template <class Tree, class T, class AnyHit, class Options>
-void find_passages(const Tree& tree, const RaySourceOf<T>& given, const HitRecords<AnyHit>& hits,
-                   const Options& by) {
+void find_closest_crossings(const Tree& tree, const RaySourceOf<T>& given, const HitRecords<AnyHit>& hits,
+                            const Options& by) {
   const SurfaceDoor<Tree> door(tree);
-  door.require_passages(by);
+  door.require_closest_crossing(by);
   const CheckedCall call("closest_crossing", given, hits, by);
   const RaySourceOf<T>& rays = call.rays;
   const Options& options = call.options;
@@ -48,22 +48,22 @@ void find_passages(const Tree& tree, const RaySourceOf<T>& given, const HitRecor
 template <class Tree>
 auto SurfaceQueries<Tree>::closest_crossing(const Ray& ray, const Options& options) const -> Hit {
   const Tree& tree = this->self();
-  SurfaceDoor<Tree>(tree).require_passages(options);
+  SurfaceDoor<Tree>(tree).require_closest_crossing(options);
   Hit hit = tree.closest(ray, options);
   const QuietFloats quiet;
   if (!hit || !may_touch_edge(hit)) return hit;
   Options of_batch = options;  // whose own options mean nothing here
   of_batch.active = nullptr, of_batch.progress = nullptr;
-  find_passages(tree, source_of(Rays(&ray, 1), of_batch), Hits(&hit, 1), of_batch);
+  find_closest_crossings(tree, source_of(Rays(&ray, 1), of_batch), Hits(&hit, 1), of_batch);
   return hit;
 }
 template <class Tree>
 void SurfaceQueries<Tree>::closest_crossing(Rays rays, Hits hits, const Options& options) const {
-  find_passages(this->self(), source_of(rays, options), hits, options);
+  find_closest_crossings(this->self(), source_of(rays, options), hits, options);
 }
 template <class Tree>
 void SurfaceQueries<Tree>::closest_crossing(const Columns& rays, Hits hits, const Options& options) const {
-  find_passages(this->self(), source_of(rays, options), hits, options);
+  find_closest_crossings(this->self(), source_of(rays, options), hits, options);
 }
 
 template <class Tree>
@@ -112,8 +112,8 @@ class SurfaceOfTree {
 
   template <class Options>
   auto judge(const Options& options) const {
-    return [judge = PassageJudge<T>(view_, options)](const RayOf<T>& ray, const SkippedPrimitive& skipped,
-                                                     const HitOf<T>& hit) {
+    return [judge = CrossingJudge<T>(view_, options)](const RayOf<T>& ray, const SkippedPrimitive& skipped,
+                                                      const HitOf<T>& hit) {
       return judge(ray, skipped.primitive, hit);
     };
   }

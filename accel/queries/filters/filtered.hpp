@@ -6,7 +6,7 @@
 namespace raylanes {
 
 // The rays of a call for next hits: few enough for their hits to stay in the first levels of caches.
-constexpr std::size_t rays_of_next_calls = 1024;
+constexpr std::size_t rays_of_single_calls = 1024;
 
 // The primitives that some rays of a batch skip, by their indices; empty: none.
 inline std::vector<SkippedPrimitive> skips_of(const PrimitiveView& skip, std::span<const std::size_t> rays) {
@@ -89,7 +89,7 @@ TurnedDown<AnyHit, typename Source::Ray> turned_down_of(const Source& rays, cons
 }
 
 // Replaces hits that the filter turns down by the next ones, until it keeps them or there is none.
-// next(rays, hits, indices) replaces hits[k] by the hit of rays[k] behind it.
+// next(rays, hits, indices) replaces hits[k] by the hit of rays[k] after it.
 template <class AnyHit, class Source, class Filter, class View, class Next, class Asked = EveryHit>
 void replace_turned_down(const Source& rays, const View& hits, const Filter& filter, const Next& next,
                          const Asked& may_turn_down = {}) {

@@ -8,9 +8,9 @@
 
 namespace raylanes {
 
-// Whether a hit comes behind another one of its ray, in the order of t, instance and primitive.
+// Whether a hit comes after another one of its ray, in the order of t, instance and primitive.
 template <class AnyHit>
-bool comes_behind(const AnyHit& hit, const AnyHit& last) {
+bool comes_after(const AnyHit& hit, const AnyHit& last) {
   const auto number = [](const AnyHit& of) {
     if constexpr (requires { of.instance; })
       return (std::uint64_t{of.instance} << 32) + of.primitive;
@@ -20,7 +20,7 @@ bool comes_behind(const AnyHit& hit, const AnyHit& last) {
   return hit.t > last.t || (hit.t == last.t && number(hit) > number(last));
 }
 
-// Asks about the hits of lists[k] behind some.hits[k], in order, until one is kept. Rays stay in `some`, with the last
+// Asks about the hits of lists[k] after some.hits[k], in order, until one is kept. Rays stay in `some`, with the last
 // hit that was turned down, if their lists had `most` hits and none of them was kept; hits are set for the others.
 template <class AnyHit, class AnyRay, class Filter, class View>
 void ask_in_lists(TurnedDown<AnyHit, AnyRay>& some, const RayLists<AnyHit>& lists, std::size_t most,
@@ -30,7 +30,7 @@ void ask_in_lists(TurnedDown<AnyHit, AnyRay>& some, const RayLists<AnyHit>& list
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto list = lists[k];
     const auto behind =
-        std::ranges::find_if(list, [&](const AnyHit& hit) { return comes_behind(hit, some.hits[k]); });
+        std::ranges::find_if(list, [&](const AnyHit& hit) { return comes_after(hit, some.hits[k]); });
     at[k] = lists.offsets[k] + static_cast<std::size_t>(behind - list.begin());
   }
   std::iota(open.begin(), open.end(), std::size_t{0});
@@ -64,7 +64,7 @@ class LengthOfLists {
   std::uint32_t of(std::size_t rays) const {
     const bool are_streams = has_streams_ && rays >= min_rays_together;
     const std::size_t of_stream = mean_ == 0                   ? most_of_sample
-                                  : mean_ < most_of_sample / 2 ? max_alone + 1
+                                  : mean_ < most_of_sample / 2 ? max_as_singles + 1
                                                                : few_;
     return static_cast<std::uint32_t>(are_streams ? of_stream : few_);
   }

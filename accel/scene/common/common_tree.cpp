@@ -21,20 +21,20 @@ std::uint32_t MemberNumbers::of(std::uint32_t instance, std::uint32_t primitive)
   return has_it ? member->first + primitive : no_primitive;
 }
 
-Hit MemberNumbers::after(const SceneHit& last) const {
+Hit MemberNumbers::after(const SceneHit& hit) const {
   constexpr std::uint32_t behind_all = no_primitive - 1;
-  if (!(last.t < std::numeric_limits<float>::infinity())) return {};
-  if (!last) return {last.t, 0, 0, behind_all};
-  const Member* const member = &from(last.instance);
+  if (!(hit.t < std::numeric_limits<float>::infinity())) return {};
+  if (!hit) return {hit.t, 0, 0, behind_all};
+  const Member* const member = &from(hit.instance);
   std::uint32_t behind = member->first;
-  if (member->instance == last.instance && last.instance != no_part)
-    behind += std::min(last.primitive, member[1].first - member->first - 1) + 1;
-  return behind == 0 ? Hit{before(last.t), 0, 0, behind_all} : Hit{last.t, 0, 0, behind - 1};
+  if (member->instance == hit.instance && hit.instance != no_part)
+    behind += std::min(hit.primitive, member[1].first - member->first - 1) + 1;
+  return behind == 0 ? Hit{before(hit.t), 0, 0, behind_all} : Hit{hit.t, 0, 0, behind - 1};
 }
 
 CommonTree::CommonTree(const CommonTree& other)
     : geometry(other.geometry),
-      own(other.own != nullptr ? std::make_shared<Bvh>(TreeOf::copy(*other.own)) : nullptr),
+      own(other.own != nullptr ? std::make_shared<Bvh>(TreeAccess::copy(*other.own)) : nullptr),
       view(other.view),
       members(other.members),
       slots(other.slots),
@@ -42,7 +42,7 @@ CommonTree::CommonTree(const CommonTree& other)
       mask(other.mask),
       triangles(other.triangles),
       struck(other.struck) {
-  if (own != nullptr) geometry = geometry_of_triangles(own), view = TreeOf::ready(*own);
+  if (own != nullptr) geometry = geometry_of_triangles(own), view = TreeAccess::ready(*own);
 }
 
 std::size_t CommonTree::members_left() const {
@@ -50,7 +50,7 @@ std::size_t CommonTree::members_left() const {
 }
 
 void CommonTree::strike(Member& member) noexcept {
-  TreeOf::strike(*own, member.box, member.first, (&member)[1].first);
+  TreeAccess::strike(*own, member.box, member.first, (&member)[1].first);
   member.is_struck = true, struck += member.triangles;
 }
 

@@ -27,8 +27,8 @@ struct MemberNumbers {
   }
   // The number of a primitive; no_primitive if no member has it.
   std::uint32_t of(std::uint32_t instance, std::uint32_t primitive) const;
-  // The hit behind which those hits come that are behind `last`, in the order of t, instance, primitive.
-  Hit after(const SceneHit& last) const;
+  // The hit after which those hits come that are after `hit`, in the order of t, instance, primitive.
+  Hit after(const SceneHit& hit) const;
 };
 // The numbers of an instance alone in its tree.
 struct OneMember {

@@ -167,7 +167,7 @@ void CommonUpdate::set_tree(CommonGroup& group, const std::vector<std::uint32_t>
   const std::shared_ptr<Geometry>& alone = scene_.geometries[tree->members[0].geometry];
   if (chosen.size() > 1) tree->own = std::make_shared<Bvh>(united(scene_, tree->members, threads));
   tree->geometry = tree->own != nullptr ? geometry_of_triangles(tree->own) : alone;
-  tree->view = TreeOf::ready(*tree->geometry->triangles());
+  tree->view = TreeAccess::ready(*tree->geometry->triangles());
   group.tree = std::move(tree);
 }
 

@@ -44,9 +44,9 @@ RayLists<Item> lists_in_tree(const Bvh& tree, const MemberNumbers& numbers, RayS
   }
   options.skip = rays.skip;
   if constexpr (is_hit<Item>)
-    return hits_of<float>(TreeOf::traced(tree), rays, options);
+    return hits_of<float>(TreeAccess::traced(tree), rays, options);
   else
-    return crossings_of<float>(TreeOf::traced(tree), rays, options);
+    return crossings_of<float>(TreeAccess::traced(tree), rays, options);
 }
 // The lists of rays in a common tree, as lists in the scene.
 template <class Item>

@@ -89,8 +89,8 @@ bool has_triangles_alone(const SceneParts& scene) {
 }
 
 // Says of a hit that may touch an edge whether the ray passes through its instance there.
-bool is_passage(const PassageJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
-                const SkippedPrimitive& skipped, const TraceOptions& options) {
+bool is_crossing(const CrossingJudge<float>& judge, const SceneParts& parts, Ray ray, const SceneHit& hit,
+                 const SkippedPrimitive& skipped, const TraceOptions& options) {
   const Instance& instance = parts.instances[hit.instance];
   if (!instance.is_identity) {
     const Ray given = ray;
@@ -115,16 +115,16 @@ RayLists<SceneCrossing> crossings_in(const char* name, const SceneParts& scene, 
 
 template <>
 struct SurfaceDoor<Scene> {
-  explicit SurfaceDoor(const Scene& of) : scene(of), parts(TreeOf::parts(of)) {}
+  explicit SurfaceDoor(const Scene& of) : scene(of), parts(TreeAccess::parts(of)) {}
 
-  void require_passages(const TraceOptions& options) const { require_triangles(scene, options); }
+  void require_closest_crossing(const TraceOptions& options) const { require_triangles(scene, options); }
   auto judge(const TraceOptions& options) const {
-    std::vector<std::optional<PassageJudge<float>>> judges(scene.geometry_count());
+    std::vector<std::optional<CrossingJudge<float>>> judges(scene.geometry_count());
     return [this, judges = std::move(judges), &options](const Ray& ray, const SkippedPrimitive& skipped,
                                                         const SceneHit& hit) mutable {
       auto& judge = judges[hit.geometry];
-      if (!judge) judge.emplace(TreeOf::traced(*scene.tree(hit.geometry)), options);
-      return is_passage(*judge, parts, ray, hit, skipped, options);
+      if (!judge) judge.emplace(TreeAccess::traced(*scene.tree(hit.geometry)), options);
+      return is_crossing(*judge, parts, ray, hit, skipped, options);
     };
   }
   RayLists<SceneHit> hits(const RaySource& rays, const ListOptions& options) const {

@@ -14,7 +14,7 @@ RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOpt
   require_triangles(scene, {});
   const TraceOptions checked{
       .path = options.path, .threads = options.threads, .skip = options.skip, .mask = options.mask};
-  const SceneQuery query = checked_query(TreeOf::parts(scene), checked);
+  const SceneQuery query = checked_query(TreeAccess::parts(scene), checked);
   const std::vector<Ray> whole = rays_without_ends<float>(rays, options.active);
   auto crossings = InstanceLists<Crossing>(query, whole, all_crossings(options)).find();
   std::ranges::stable_sort(crossings, {}, [](const auto& c) { return std::tuple(c.ray, c.instance); });

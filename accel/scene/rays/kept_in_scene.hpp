@@ -1,7 +1,7 @@
 // One ray in a scene whose caller rejects hits, where one tree has all that the ray's mask sees.
 #pragma once
 
-#include "../../queries/next.hpp"
+#include "../../queries/after.hpp"
 #include "../lists/instance_lists.hpp"
 
 namespace raylanes {
@@ -23,7 +23,7 @@ struct KeptInCommon {
     asked = {&rejects, this, options.facing};
     if (options.skip.first != nullptr) asked.skipped = numbers.of(options.skip.instance(0), options.skip[0]);
     if (options.after.first != nullptr)
-      last_ = numbers.after(last_hit(options.after, 0)), asked.after = &last_;
+      last_ = numbers.after(hit_of_after(options.after, 0)), asked.after = &last_;
     tree = seen;
   }
   KeptInCommon(const KeptInCommon&) = delete;

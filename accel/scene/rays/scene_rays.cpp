@@ -58,13 +58,13 @@ SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ra
   for (const auto& tree : scene.commons) {
     if (!scene.sees(*tree, mask)) continue;
     Ray rest = ray;
-    if (hit && tmax_behind(hit.t) < ray.tmax) rest.tmax = tmax_behind(hit.t);
+    if (hit && tmax_after(hit.t) < ray.tmax) rest.tmax = tmax_after(hit.t);
     const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, rest);
     if (is_before(next, hit)) hit = next;
   }
   for (const TopLevel& top : scene.tops)
     if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
-  if (comes_to_others(scene, ray, tmax_behind(hit.t)))
+  if (comes_to_others(scene, ray, tmax_after(hit.t)))
     trace_others(checked_query(scene, {.path = &path, .mask = mask}), {&ray, 1, &hit, nullptr});
   return hit;
 }
@@ -94,7 +94,7 @@ class KernelsOfScene {
     }
     rows_.usual = usual_row(options);
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
-    if (rows_.usual == nullptr && !names_no_instance) rows_.chosen = chosen_row(options, rays);
+    if (rows_.usual == nullptr && !names_no_instance) rows_.chosen = ruled_row(options, rays);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
   SceneHit closest(const Ray& ray, std::size_t i) const {
@@ -153,7 +153,7 @@ class RayDoor<Scene> {
  public:
   static constexpr const char* name = "scene";
 
-  explicit RayDoor(const Scene& scene) : scene_(scene), parts_(TreeOf::parts(scene)) {}
+  explicit RayDoor(const Scene& scene) : scene_(scene), parts_(TreeAccess::parts(scene)) {}
 
   SceneHit closest(const Ray& ray) const {
     if (const CommonTree* const tree = quick_tree(parts_, ~0u)) [[likely]]
@@ -182,10 +182,10 @@ class RayDoor<Scene> {
     require_after_in_scene(options, 1);
     const SceneQuery query = checked_query(parts_, options);
     const QuietFloats quiet;
-    const bool looks_behind = options.after.first != nullptr;
-    const SceneHit last = looks_behind ? last_hit(options.after, 0) : SceneHit();
+    const bool has_after = options.after.first != nullptr;
+    const SceneHit last = has_after ? hit_of_after(options.after, 0) : SceneHit();
     SceneHit hit;
-    trace_scene(query, {&ray, 1, &hit, nullptr, {}, looks_behind ? &last : nullptr});
+    trace_scene(query, {&ray, 1, &hit, nullptr, {}, has_after ? &last : nullptr});
     return hit;
   }
   [[gnu::cold, gnu::noinline]] bool any_by(const Ray& ray, const TraceOptions& options) const {
@@ -201,7 +201,7 @@ class RayDoor<Scene> {
     const CheckedCall call(name, rays, hits, options);
     require_after_in_scene(options, rays.size());
     const SceneQuery query = checked_query(parts_, call.options);
-    if (options.after.first != nullptr) return trace_next(query, call.rays, hits, call.options);
+    if (options.after.first != nullptr) return trace_after(query, call.rays, hits, call.options);
     trace_all(query, call.rays, HitSink<SceneHit>{hits}, options.threads);
   }
   void trace(RaySource rays, std::span<std::uint8_t> occluded, const TraceOptions& options) const {

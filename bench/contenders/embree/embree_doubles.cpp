@@ -54,11 +54,11 @@ HitD hit_of(const RayD& ray, const DoubleMesh& mesh, std::uint32_t triangle) {
 }
 
 // rtcOccluded1 passes a ray, rtcIntersect1 a ray and a hit; the ray comes first in both.
-Query& query_behind(RTCRayN* ray) {
+Query& query_after(RTCRayN* ray) {
   return *reinterpret_cast<Query*>(ray);
 }
 void keep_nearest(const RTCIntersectFunctionNArguments* arguments) {
-  Query& query = query_behind(reinterpret_cast<RTCRayN*>(arguments->rayhit));
+  Query& query = query_after(reinterpret_cast<RTCRayN*>(arguments->rayhit));
   const auto& mesh = *static_cast<const DoubleMesh*>(arguments->geometryUserPtr);
   const HitD hit = hit_of(*query.ray, mesh, arguments->primID);
   if (!hit || !(hit.t >= query.ray->tmin && hit.t <= query.best.t)) return;
@@ -67,7 +67,7 @@ void keep_nearest(const RTCIntersectFunctionNArguments* arguments) {
   query.floats.hit.geomID = arguments->geomID, query.floats.hit.primID = arguments->primID;
 }
 void find_any(const RTCOccludedFunctionNArguments* arguments) {
-  Query& query = query_behind(arguments->ray);
+  Query& query = query_after(arguments->ray);
   const auto& mesh = *static_cast<const DoubleMesh*>(arguments->geometryUserPtr);
   const HitD hit = hit_of(*query.ray, mesh, arguments->primID);
   if (hit && hit.t >= query.ray->tmin && hit.t <= query.ray->tmax)

@@ -23,7 +23,7 @@ UndecidedLanes counted;
 struct CountedExact : Exact<Grade::reproducible> {
   template <bool in_tree, class Ray, class Load, class Segment>
   static auto classify(const Ray& ray, Load load, std::uint32_t occupied, Segment segment,
-                       BothSides sides = {}) {
+                       NoRule sides = {}) {
     const auto filtered = Exact<Grade::reproducible>::classify<in_tree>(ray, load, occupied, segment, sides);
     ++counted.tests;
     if (filtered.undecided != 0) {

@@ -20,17 +20,17 @@ struct AsSceneHit {
 };
 
 // A batch of one ray, for the triangles that count.
-inline TraceBatch batch_of(const Ray& ray, const BothSides&) {
+inline TraceBatch batch_of(const Ray& ray, const NoRule&) {
   TraceBatch batch;
   batch.rays = &ray, batch.size = 1;
   return batch;
 }
-inline TraceBatch batch_of(const Ray& ray, const ChosenTriangles& sides) {
-  TraceBatch batch = batch_of(ray, BothSides());
+inline TraceBatch batch_of(const Ray& ray, const HitRule& sides) {
+  TraceBatch batch = batch_of(ray, NoRule());
   batch.facing = sides.facing, batch.skip = &sides.skipped;
   return batch;
 }
-template <class Test, class Sides = BothSides>
+template <class Test, class Sides = NoRule>
 [[gnu::noinline]] Hit closest_of_batch(const TreeView& tree, const Ray& ray, Sides sides = {}) {
   Hit hit;
   TraceBatch batch = batch_of(ray, sides);
@@ -39,11 +39,11 @@ template <class Test, class Sides = BothSides>
   return hit;
 }
 #if defined(__AVX2__) && defined(__FMA__)
-template <class Test, class As, class Sides = BothSides>
+template <class Test, class As, class Sides = NoRule>
 [[gnu::always_inline]] inline auto closest_as(const TreeView& tree, const Ray& ray, const As& as,
                                               [[maybe_unused]] Sides sides = {}) {
   if (tree.root == empty_reference) return as(Hit());
-  if constexpr (is_filtered<Test>) {
+  if constexpr (screens<Test>) {
     FusedRay nodes;
     if (!nodes.template prepare<Test>(tree, ray)) [[unlikely]]
       return as(closest_of_batch<Test>(tree, ray, sides));
@@ -65,15 +65,15 @@ bool any_fused(const TreeView& tree, const Ray& ray) {
 }
 
 template <class Test>
-inline bool is_any_chosen(const TreeView& tree, const Ray& ray, ChosenTriangles sides) {
+inline bool is_any_by_rule(const TreeView& tree, const Ray& ray, HitRule sides) {
   if (tree.root == empty_reference) return false;
-  ChosenAny query(ray, sides);
+  RuledAny query(ray, sides);
   walk_from_root<Test>(tree, ray, query);
   return query.found;
 }
 
 #else
-template <class Test, class As, class Sides = BothSides>
+template <class Test, class As, class Sides = NoRule>
 auto closest_as(const TreeView& tree, const Ray& ray, const As& as, Sides sides = {}) {
   return as(closest_of_batch<Test>(tree, ray, sides));
 }
@@ -87,10 +87,10 @@ template <class Test, class Sides>
 }
 template <class Test>
 bool any_fused(const TreeView& tree, const Ray& ray) {
-  return any_of_batch<Test>(tree, ray, BothSides());
+  return any_of_batch<Test>(tree, ray, NoRule());
 }
 template <class Test>
-bool is_any_chosen(const TreeView& tree, const Ray& ray, ChosenTriangles sides) {
+bool is_any_by_rule(const TreeView& tree, const Ray& ray, HitRule sides) {
   return any_of_batch<Test>(tree, ray, sides);
 }
 
@@ -108,21 +108,20 @@ struct CallRows {
 };
 // By the exact test.
 template <class Test>
-[[gnu::noinline, gnu::flatten]] Hit closest_chosen(const TreeView& tree, const Ray& ray, Facing facing,
-                                                   std::uint32_t skipped) {
-  return closest_as<Test>(tree, ray, AsHit(), ChosenTriangles(facing, skipped));
+[[gnu::noinline, gnu::flatten]] Hit closest_by_rule(const TreeView& tree, const Ray& ray, Facing facing,
+                                                    std::uint32_t skipped) {
+  return closest_as<Test>(tree, ray, AsHit(), HitRule(facing, skipped));
 }
 template <class Test>
-[[gnu::noinline, gnu::flatten]] bool any_chosen(const TreeView& tree, const Ray& ray, Facing facing,
-                                                std::uint32_t skipped) {
-  return is_any_chosen<Test>(tree, ray, ChosenTriangles(facing, skipped));
+[[gnu::noinline, gnu::flatten]] bool any_by_rule(const TreeView& tree, const Ray& ray, Facing facing,
+                                                 std::uint32_t skipped) {
+  return is_any_by_rule<Test>(tree, ray, HitRule(facing, skipped));
 }
 
 template <class Test>
-void nearer_chosen(const TreeView& tree, const Ray& ray, NearestSoFar& best, Facing facing,
-                   std::uint32_t skipped) {
-  ChosenCandidate query(Candidate(best.t_lo, best.tmax, best.leaf_triangle),
-                        ChosenTriangles(facing, skipped));
+void nearer_by_rule(const TreeView& tree, const Ray& ray, NearestSoFar& best, Facing facing,
+                    std::uint32_t skipped) {
+  RuledCandidate query(Candidate(best.t_lo, best.tmax, best.leaf_triangle), HitRule(facing, skipped));
   NoCounters counters(query);
   WalksNodes::walk<Test>(tree, ray, query, counters);
   best = {query.t_lo, query.tmax, query.leaf_triangle};

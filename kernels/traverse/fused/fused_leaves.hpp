@@ -12,7 +12,7 @@ inline constexpr std::uint32_t axes_by_major[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}
 inline constexpr std::ptrdiff_t rows_by_major[3][3] = {
     {tree_width, 2 * tree_width, 0}, {2 * tree_width, 0, tree_width}, {0, tree_width, 2 * tree_width}};
 
-// The filter of single rays; docs/exact.md, parts 2 and 3.
+// The screen of single rays; docs/exact.md, parts 2 and 3.
 class ExactLeaves {
   using V = NodeFloats;
 
@@ -34,7 +34,7 @@ class ExactLeaves {
   bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
+    std::uint32_t undecided = admitted_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     const std::uint32_t inside = bits(edges.certainly_inside());
     DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
@@ -61,7 +61,7 @@ class ExactLeaves {
   requires(Query::only_decides && !asks<Query>) bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
+    std::uint32_t undecided = admitted_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
     V tmin(ray_.tmin), tmax(query.tmax);
@@ -79,7 +79,7 @@ class ExactLeaves {
   requires(asks<Query>) bool visit(TreeReference leaf, Query& query) const {
     V z[3];
     const auto edges = edges_of(leaf, z);
-    std::uint32_t undecided = chosen_by(edges, leaf, query.sides);
+    std::uint32_t undecided = admitted_by(edges, leaf, query.sides);
     if (undecided == 0) return false;
     DepthBounds<V> t(edges, z[0], z[1], z[2], V(in_memory(*this).direction_[2]));
     V tmin(ray_.tmin), tmax(query.tmax);
@@ -87,7 +87,7 @@ class ExactLeaves {
     if (undecided == 0) return false;
     const std::uint32_t certain =
         undecided & bits(edges.certainly_inside() & (t.t_lo > tmin) & (t.t_hi < V(query.segment_end)));
-    return query.ask(TreeTriangles(tree_), FilterResult<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, {}},
+    return query.ask(TreeTriangles(tree_), Verdict<V>{certain, undecided & ~certain, t.t_lo, t.t_hi, {}},
                      leaf_triangle_of(leaf, 0));
   }
 
@@ -116,14 +116,14 @@ class ExactLeaves {
   // Triangles that count and that the edges do not leave out, first by the bound of any triangle.
   // The order of axes mirrors triangles for a negative direction along the major one.
   template <class Sides>
-  std::uint32_t chosen_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
+  std::uint32_t admitted_by(const EdgeBounds<V>& edges, TreeReference leaf, Sides sides) const {
     const bool mirrored = ray_.direction[nodes_.major] < 0.0f;
     // NaN, which is not within a bound, stands in lanes without a triangle alone: docs/exact.md, part 2.
     V outside_by = sides.outside_by(edges, mirrored);
     if (bits(outside_by <= V(in_memory(*this).bound_anywhere_)) == 0) return 0;
     const std::uint32_t undecided = bits(outside_by <= edges.bound);
     if (undecided == 0) return 0;
-    return sides.chosen(undecided, TreeTriangles(tree_), leaf_triangle_of(leaf, 0));
+    return sides.admitted(undecided, TreeTriangles(tree_), leaf_triangle_of(leaf, 0));
   }
 
   const TreeView& tree_;
@@ -154,7 +154,7 @@ class RoundedLeaves {
 };
 
 template <class Test>
-using FusedLeaves = std::conditional_t<is_filtered<Test>, ExactLeaves, RoundedLeaves<Test>>;
+using FusedLeaves = std::conditional_t<screens<Test>, ExactLeaves, RoundedLeaves<Test>>;
 
 }  // namespace
 }  // namespace raylanes

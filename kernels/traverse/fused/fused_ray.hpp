@@ -82,8 +82,7 @@ struct FusedRay {
       return false;
     major = static_cast<std::size_t>(std::countr_zero(bits(components == greatest)));
     Floats<4> padding = fused(largest_size, Floats<4>(pad), Floats<4>(min_pad + more));
-    if constexpr (!is_filtered<Test>)
-      padding = fused(largest_of_three(farthest), Floats<4>(slab_pad), padding);
+    if constexpr (!screens<Test>) padding = fused(largest_of_three(farthest), Floats<4>(slab_pad), padding);
     Floats<4> divisor = flip(max(components, Floats<4>(min_component)), sign_of(d));
     Floats<4> reciprocal = Floats<4>(1.0f) / divisor, origin = o * reciprocal, size_of_it = abs(reciprocal);
     reciprocal.store(inverse);

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "../../exact/exact_numbers.hpp"
-#include "../../exact/leaf_filter.hpp"
+#include "../../exact/leaf_screen.hpp"
 #include "../../exact/triangle_from_origin.hpp"
 #include "packet_rays.hpp"
 
@@ -103,8 +103,8 @@ class alignas(64) EdgePlanes : PlaneNumbers<float> {
   // Rays on that side of a plain triangle: which hit it certainly, and which are neither that nor hit it beside their
   // segments. Hits count certainly within `surely`, which is what a segment is at least.
   template <class R, class Range>
-  FilterResult<R, MaskOf<R>> decide(int triangle, R side, R slope_x, R slope_y, R size_z, const Range& range,
-                                    const Range& surely) const {
+  Verdict<R, MaskOf<R>> decide(int triangle, R side, R slope_x, R slope_y, R size_z, const Range& range,
+                               const Range& surely) const {
     R along = scale(triangle, slope_x, slope_y, size_z);
     R least(min_volume_[triangle]), largest(largest_volume_[triangle]);
     auto inside = side > -R(bound(triangle));
@@ -134,7 +134,7 @@ class alignas(64) EdgePlanes : PlaneNumbers<float> {
 
  private:
   // Bounds in units of roundings; a test whose numbers are rounded adds its own.
-  static constexpr bool adds_roundings = !is_filtered<Test> && !may_take_planes<Test>;
+  static constexpr bool adds_roundings = !screens<Test> && !may_take_planes<Test>;
   static constexpr T unit = std::numeric_limits<T>::epsilon() / 2;
   static constexpr T spanned_units = 12, edge_units = adds_roundings ? 164 : 100, area_units = 160,
                      own_spanned_units = 64;
@@ -269,7 +269,7 @@ struct ColumnsOfHits {
   }
 };
 
-// For a filtered test: the numbers of the hits of a vector of rays. Returns the lanes whose numbers are not clear;
+// For a test that screens: the numbers of the hits of a vector of rays. Returns the lanes whose numbers are not clear;
 // zeros and their neighbours never are.
 template <class Test>
 inline std::uint32_t round_hits(const RaysAndHits<Test, SharedApex::origin>& rays, int row,

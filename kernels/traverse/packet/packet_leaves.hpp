@@ -11,7 +11,7 @@ namespace {
 
 // Whether packets look at facing and skip.
 template <class Test, class Counters>
-inline constexpr bool packets_choose = is_filtered<Test>&& std::is_same_v<Counters, NoCounters>;
+inline constexpr bool packets_choose = screens<Test>&& std::is_same_v<Counters, NoCounters>;
 
 // Rays that are no packet.
 template <class Test, bool only_decides, class Counters>
@@ -44,7 +44,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   PacketLeaves(const TreeView& tree, const TraceBatch& batch, Rays& rays, const ApexOfRays<apex>& of,
                std::size_t rays_left)
       : Walk(Walk::template calls_of<PacketLeaves>, tree, batch, rays, of, rays_left, batch.hits,
-             is_filtered<Test> ? 0.0f : slab_pad),
+             screens<Test> ? 0.0f : slab_pad),
         batch_(batch),
         rays_(rays),
         from_origin_(tree, of.at) {}
@@ -69,19 +69,19 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     counters().leaf(), counters().frusta(first_lanes<tree_width>(size), tree_width / node_lanes);
     std::uint32_t some = first_lanes<tree_width>(size);
     if constexpr (chooses && apex != SharedApex::none)
-      some &= ~triangles.plain | lanes_that_count(batch_.facing, ~0u, front_of(triangles));
+      some &= ~triangles.plain | admitted_lanes(batch_.facing, ~0u, front_of(triangles));
     std::uint32_t hit = this->each_met(triangles, some, at.vectors, [&](int triangle, int row) {
       return test_vector(triangles, leaf, triangle, row);
     });
-    if constexpr (filters_undecided)
-      if (with_undecided_ != 0) hit |= filter_undecided(leaf);
+    if constexpr (settles_undecided)
+      if (with_undecided_ != 0) hit |= settle_undecided(leaf);
     this->refresh(hit);
   }
   // For any hit few nodes are left: the walk of single rays, out of line, gains nothing there.
   [[gnu::noinline, gnu::flatten]] void trace_rays(const StackEntry& at) {
     this->each_single(at, [this](const TreeView& below, int row, int lane) {
       if constexpr (chooses)
-        if (batch_.chosen != nullptr) return trace_chosen(below, row, lane);
+        if (batch_.chosen != nullptr) return trace_by_rule(below, row, lane);
       Counters cost = counters();
       const Ray& ray = ray_of(row, lane);
       if constexpr (only_decides) {
@@ -97,7 +97,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   }
 
  private:
-  static constexpr bool filters_undecided = is_filtered<Test> && only_decides && apex == SharedApex::end;
+  static constexpr bool settles_undecided = screens<Test> && only_decides && apex == SharedApex::end;
   static constexpr bool chooses = packets_choose<Test, Counters>;
 
   struct Leaf {
@@ -118,11 +118,11 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   }
   // Leaves the lanes that are hit on a side that counts, of certain hits.
   std::uint32_t on_sides(std::uint32_t certain, V det) const {
-    if constexpr (chooses) return lanes_that_count(batch_.facing, certain, bits(det > V(0.0f)));
+    if constexpr (chooses) return admitted_lanes(batch_.facing, certain, bits(det > V(0.0f)));
     return certain;
   }
   // As trace_rays(), by the batch's row.
-  void trace_chosen(const TreeView& below, int row, int lane) {
+  void trace_by_rule(const TreeView& below, int row, int lane) {
     const Ray& ray = ray_of(row, lane);
     const std::uint32_t skipped = batch_.skip != nullptr ? rays_.skipped[row][lane] : no_primitive;
     if constexpr (only_decides) {
@@ -138,7 +138,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   // Tests a vector of rays and one triangle; returns whether segments have changed. If the planes of a triangle and its
   // t leave nothing undecided, no test is needed; only the test itself gives the numbers of a hit.
   bool test_vector(const Triangles& triangles, const Leaf& leaf, int triangle, int row) {
-    constexpr bool is_closest_hit = !only_decides && !is_filtered<Test>;
+    constexpr bool is_closest_hit = !only_decides && !screens<Test>;
     if constexpr (apex != SharedApex::none && may_take_planes<Test>)
       return hit_planes(triangles, leaf, triangle, row);
     else if constexpr (apex == SharedApex::none || is_closest_hit)
@@ -168,7 +168,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     V side = planes.side(triangle, x, y);
     std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & rays_for(leaf, triangle, row);
     if ((planes.plain >> triangle & 1u) == 0) [[unlikely]]
-      return rays != 0 && leave_undecided(leaf, triangle, row, rays);
+      return rays != 0 && defer_undecided(leaf, triangle, row, rays);
     const auto range = segment(row);
     auto surely = range;
     if constexpr (apex == SharedApex::end) {
@@ -176,27 +176,27 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
       surely.tmin = range.tmin + (t_error + t_error), surely.tmax = range.tmax - (t_error + t_error);
     }
     const auto decided = planes.decide(triangle, side, x, y, V::load(rays_.size_z[row]), range, surely);
-    const FilterResult<V> filtered{bits(decided.certain) & rays, 0, decided.t_lo, decided.t_hi};
-    counters().hits(filtered.certain);
-    keep_certain(filtered, leaf, triangle, row);
+    const Verdict<V> verdict{bits(decided.certain) & rays, 0, decided.t_lo, decided.t_hi};
+    counters().hits(verdict.certain);
+    keep_certain(verdict, leaf, triangle, row);
     rays &= bits(decided.undecided);
-    const bool changed = filtered.certain != 0;
-    return rays != 0 ? changed | leave_undecided(leaf, triangle, row, rays) : changed;
+    const bool changed = verdict.certain != 0;
+    return rays != 0 ? changed | defer_undecided(leaf, triangle, row, rays) : changed;
   }
-  // Decides what the planes do not, or leaves it to the filter; returns whether segments have changed.
-  bool leave_undecided(const Leaf& leaf, int triangle, int row, std::uint32_t rays) {
-    if constexpr (!filters_undecided) return test_out_of_line(leaf, triangle, row, rays);
+  // Decides what the planes do not, or leaves it to the screen; returns whether segments have changed.
+  bool defer_undecided(const Leaf& leaf, int triangle, int row, std::uint32_t rays) {
+    if constexpr (!settles_undecided) return test_out_of_line(leaf, triangle, row, rays);
     const std::uint32_t so_far = with_undecided_ >> row & 1u ? undecided_[row] : 0u;
     undecided_[row] = static_cast<std::uint8_t>(so_far | 1u << triangle);
     with_undecided_ |= 1u << row;
     return false;
   }
-  // Planes mostly leave undecided the triangle where a ray begins: the filter of leaves tests it from the rays' own
+  // Planes mostly leave undecided the triangle where a ray begins: the screen of leaves tests it from the rays' own
   // origins. Returns the vectors with hits.
-  [[gnu::noinline, gnu::flatten]] std::uint32_t filter_undecided(const Leaf& leaf) {
+  [[gnu::noinline, gnu::flatten]] std::uint32_t settle_undecided(const Leaf& leaf) {
     constexpr float farthest = 0x1p60f;
-    const bool is_unusual = filter_scale<Test>(tree_.bounds) != 1.0f;
-    const LeafFilter filter(leaf.block, leaf_size(leaf.reference), farthest, 1.0f);
+    const bool is_unusual = screen_scale<Test>(tree_.bounds) != 1.0f;
+    const LeafScreen screen(leaf.block, leaf_size(leaf.reference), farthest, 1.0f);
     std::uint32_t hit = 0;
     for (; with_undecided_ != 0; with_undecided_ &= with_undecided_ - 1) {
       const int row = std::countr_zero(with_undecided_);
@@ -207,12 +207,12 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
       const Segment<V, true> range{rays.tmin, finite_tmax(rays.tmax)};
       for (std::uint32_t triangles = undecided_[row]; triangles != 0; triangles &= triangles - 1) {
         const int triangle = std::countr_zero(triangles);
-        const auto filtered = filter.classify(lanes, length, triangle, range);
+        const auto verdict = screen.classify(lanes, length, triangle, range);
         const std::uint32_t active = rays_.active[row], met = rays_for(leaf, triangle, row);
-        const std::uint32_t certain = on_sides(bits(filtered.certain) & met & ~far, filtered.det);
+        const std::uint32_t certain = on_sides(bits(verdict.certain) & met & ~far, verdict.det);
         counters().hits(certain);
         rays_.active[row] &= ~certain;
-        const std::uint32_t undecided = (bits(filtered.undecided) | far) & rays_.active[row] & met;
+        const std::uint32_t undecided = (bits(verdict.undecided) | far) & rays_.active[row] & met;
         if (undecided != 0) [[unlikely]]
           test_out_of_line(leaf, triangle, row, undecided);
         if (rays_.active[row] != active) hit |= 1u << row;
@@ -237,17 +237,17 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   bool test_rays(const PreparedRays<Test, V>& prepared, const Range& range, const Leaf& leaf, int triangle,
                  int row, std::uint32_t rays) {
     const auto load = [&](int k) { return V(leaf.block.number[prepared.axes.index(k)][triangle]); };
-    if constexpr (is_filtered<Test>) {
-      auto filtered = Test::template classify<true>(prepared.triangles, load, rays, [&] { return range; });
-      if ((filtered.certain | filtered.undecided) == 0) return false;
-      filtered.certain = on_sides(filtered.certain, filtered.det);
-      counters().hits(filtered.certain), counters().undecided(filtered.undecided);
-      keep_certain(filtered, leaf, triangle, row);
-      if (filtered.undecided != 0) [[unlikely]] {
+    if constexpr (screens<Test>) {
+      auto verdict = Test::template classify<true>(prepared.triangles, load, rays, [&] { return range; });
+      if ((verdict.certain | verdict.undecided) == 0) return false;
+      verdict.certain = on_sides(verdict.certain, verdict.det);
+      counters().hits(verdict.certain), counters().undecided(verdict.undecided);
+      keep_certain(verdict, leaf, triangle, row);
+      if (verdict.undecided != 0) [[unlikely]] {
         if (apex == SharedApex::end && batch_.facing == Facing::any)
-          rays_.active[row] &= ~bits(Test::decide(prepared.triangles, load, range, filtered.undecided).hit);
+          rays_.active[row] &= ~bits(Test::decide(prepared.triangles, load, range, verdict.undecided).hit);
         else
-          decide_exactly(filtered.undecided, leaf_triangle_of(leaf.reference, triangle), row);
+          decide_exactly(verdict.undecided, leaf_triangle_of(leaf.reference, triangle), row);
       }
     } else {
       auto h = raylanes::test_triangle<Test>(prepared.triangles, load, range);
@@ -265,20 +265,20 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     else
       rays_.keep_nearer(row, h, rays, leaf.block.primitive[triangle]);
   }
-  void keep_certain(const FilterResult<V>& filtered, const Leaf& leaf, int triangle, int row) {
+  void keep_certain(const Verdict<V>& verdict, const Leaf& leaf, int triangle, int row) {
     if constexpr (only_decides)
-      rays_.active[row] &= ~filtered.certain;
+      rays_.active[row] &= ~verdict.certain;
     else
-      rays_.keep_certain(row, filtered, leaf_triangle_of(leaf.reference, triangle));
+      rays_.keep_certain(row, verdict, leaf_triangle_of(leaf.reference, triangle));
   }
   [[gnu::noinline]] void decide_exactly(std::uint32_t undecided, std::uint32_t leaf_triangle, int row) {
     const TreeTriangles triangles(tree_);
-    const std::conditional_t<chooses, ChosenTriangles, BothSides> sides(batch_);
+    const std::conditional_t<chooses, HitRule, NoRule> sides(batch_);
     for (; undecided != 0; undecided &= undecided - 1) {
       const int lane = std::countr_zero(undecided);
       const Ray& ray = ray_of(row, lane);
       if constexpr (only_decides) {
-        if (sides.counted(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle))
+        if (sides.admitted_hit(exact_hit(triangles, ray, leaf_triangle), triangles, ray, leaf_triangle))
           rays_.active[row] &= ~(1u << lane);
       } else {
         Candidate best = rays_.query(row, lane);
@@ -290,13 +290,13 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
 
   RayColumns user_rays(int row) const { return rays_.runs.columns(batch_.rays, rays_.first_run[row]); }
   auto segment(int row) const {
-    if constexpr (is_filtered<Test> && !only_decides)
+    if constexpr (screens<Test> && !only_decides)
       return rays_.state(row);
     else
       return segment(V::load(rays_.tmin[row]), V::load(rays_.tmax[row]));
   }
   static auto segment(V tmin, V tmax) {
-    if constexpr (is_filtered<Test>)
+    if constexpr (screens<Test>)
       return Segment<V, true>{tmin, tmax};
     else
       return LeafSegment<V>{{tmin, tmax}};
@@ -305,7 +305,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   [[gnu::noinline, gnu::flatten]] void store_results(int row) {
     if constexpr (only_decides) {
       store_decisions(batch_.occluded, rays_, row);
-    } else if constexpr (is_filtered<Test> && apex == SharedApex::none) {
+    } else if constexpr (screens<Test> && apex == SharedApex::none) {
       DeferredHits<W> winners;
       for (int lane = 0; lane < W; ++lane)
         winners.set(lane, TreeTriangles(tree_), ray_of(row, lane), rays_.leaf_triangle[row][lane]);
@@ -315,7 +315,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
         const int lane = std::countr_zero(lanes);
         batch_.hits[rays_.index(row, lane)] = hits[lane];
       }
-    } else if constexpr (is_filtered<Test>) {
+    } else if constexpr (screens<Test>) {
       ColumnsOfHits hits;
       std::uint32_t undecided = round_hits<Test>(rays_, row, from_origin_, hits);
       store_hits(batch_.hits, rays_, row, hits);
@@ -335,7 +335,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   struct Nothing {
     Nothing(const TreeView&, const Float3&) {}
   };
-  static constexpr bool rounds_hits = is_filtered<Test> && apex == SharedApex::origin && !only_decides;
+  static constexpr bool rounds_hits = screens<Test> && apex == SharedApex::origin && !only_decides;
 
   const TraceBatch& batch_;
   Rays& rays_;

@@ -51,7 +51,7 @@ struct alignas(64) PacketRays {
     from_apex.size_z.store(size_z[row]);
     from_apex.tmin.store(tmin[row]), from_apex.tmax.store(tmax[row]);
     if (lanes != first_lanes<W>(W)) [[unlikely]]
-      leave_out(row, lanes);
+      drop(row, lanes);
     return row;
   }
   // Ranges and depths of all vectors: lane by lane, vectors side by side.
@@ -118,7 +118,7 @@ struct alignas(64) PacketRays {
 
  private:
   // The other lanes are like a ray that ends before it begins.
-  [[gnu::noinline]] void leave_out(int row, std::uint32_t lanes) {
+  [[gnu::noinline]] void drop(int row, std::uint32_t lanes) {
     const int like = std::countr_zero(lanes);
     for (int lane = 0; lane < W; ++lane)
       if ((lanes >> lane & 1u) == 0) {
@@ -227,8 +227,8 @@ struct PacketScratch {
   Rays rays;
 };
 
-// For a filtered test two bounds of t and a leaf triangle, as in Candidate; for other tests the numbers of the hit.
-template <class Test, SharedApex apex, bool deferred = is_filtered<Test>>
+// For a test that screens two bounds of t and a leaf triangle, as in Candidate; for other tests the numbers of the hit.
+template <class Test, SharedApex apex, bool deferred = screens<Test>>
 struct RaysAndHits : RaysOf<apex> {
   using V = Floats<W>;
   using RaysOf<apex>::tmax;
@@ -252,9 +252,9 @@ struct RaysAndHits : RaysOf<apex> {
     return {{{V::load(this->tmin[row]), V::load(tmax[row])}, V::load(t_lo[row])},
             as<float>(FloatBits<W>::load(leaf_triangle[row]))};
   }
-  void keep_certain(int row, const FilterResult<V>& filtered, std::uint32_t of) {
+  void keep_certain(int row, const Verdict<V>& verdict, std::uint32_t of) {
     auto kept = state(row);
-    kept.keep(FloatMask<W>::from_bits(filtered.certain), filtered.t_lo, filtered.t_hi,
+    kept.keep(FloatMask<W>::from_bits(verdict.certain), verdict.t_lo, verdict.t_hi,
               as<float>(FloatBits<W>(of)));
     kept.t_lo.store(t_lo[row]), kept.tmax.store(tmax[row]);
     as<std::uint32_t>(kept.leaf_triangle).store(leaf_triangle[row]);
@@ -323,7 +323,7 @@ inline PreparedRays<Test, Floats<W>> prepared_rays(const RaysAndHits<Test, apex>
   V x = V::load(rays.slope_x[row]), y = V::load(rays.slope_y[row]), z = V::load(rays.size_z[row]);
   const auto origin = [&](int k) { return rays.origin_along(k, row, frame); };
   const auto direction = [&](int axis) { return V::load(rays.direction[axis][row]); };
-  if constexpr (is_filtered<Test>) {
+  if constexpr (screens<Test>) {
     return {frame.axes, Test::of_slopes(Vec3<V>(origin(0), origin(1), origin(2)), x, y, z, V(frame.sign),
                                         frame.axes, V(reach))};
   } else if constexpr (Test::by_major_axis) {

@@ -1,6 +1,6 @@
 // Every query of rays, of all triangles, of one side of them, and of all but one for each ray: rational numbers say
 // what each returns, on every tree of floats and of doubles, on every path and in every mode, of many rays and alone.
-#include "../../oracles/passage_oracle.hpp"
+#include "../../oracles/closest_crossing_oracle.hpp"
 #include "../../oracles/peeled.hpp"
 #include "../../support/filtered.hpp"
 #include "../../traverse/reference/in_flight.hpp"
@@ -15,7 +15,7 @@ template <class T>
 struct Expected {
   Facing facing;
   std::vector<std::uint32_t> skip;
-  std::vector<std::vector<HitOf<T>>> hits, passages;
+  std::vector<std::vector<HitOf<T>>> hits, closest_crossings;
   std::vector<std::vector<CrossingOf<T>>> crossings;
   std::vector<std::uint8_t> occluded;
   std::vector<CrossingCount> counts;
@@ -31,9 +31,9 @@ struct Expected {
       std::erase_if(all, is_skipped), std::erase_if(of_ray, is_skipped);
       occluded.push_back(of_ray.empty() ? 0 : 1);
       auto& crossed = crossings.emplace_back(oracle::exact_crossings(mesh, ray));
-      auto& passed = passages.emplace_back(oracle_passages(mesh, ray, all, crossed));
-      std::erase_if(passed, [&](const auto& passage) {
-        return std::ranges::find(of_ray, passage.primitive, &HitOf<T>::primitive) == of_ray.end();
+      auto& passed = closest_crossings.emplace_back(oracle_closest_crossings(mesh, ray, all, crossed));
+      std::erase_if(passed, [&](const auto& crossing) {
+        return std::ranges::find(of_ray, crossing.primitive, &HitOf<T>::primitive) == of_ray.end();
       });
       std::erase_if(crossed, [&](const auto& crossing) {
         return is_skipped(crossing) ||
@@ -133,13 +133,13 @@ void expect_lists(const Tree& tree, const std::vector<RayOf<T>>& rays, const Exp
   }
 }
 
-// Next hits and next passages, until there are no more.
+// Hits and crossings after others, until there are no more.
 template <class T, class Tree>
-void expect_next(const Tree& tree, const std::vector<RayOf<T>>& rays, const Expected<T>& expected,
-                 TraceOptionsOf<T> options) {
+void expect_after(const Tree& tree, const std::vector<RayOf<T>>& rays, const Expected<T>& expected,
+                  TraceOptionsOf<T> options) {
   options.facing = expected.facing, options.skip = expected.skip;
   expect_peeled(rays, expected.hits, options, hits_of(tree, rays, expected.skip));
-  expect_peeled(rays, expected.passages, options, passages_of(tree, rays, expected.skip));
+  expect_peeled(rays, expected.closest_crossings, options, closest_crossings_of(tree, rays, expected.skip));
 }
 
 template <class T, class Tree>
@@ -148,13 +148,13 @@ void expect_all(const Tree& tree, const Path* path, const std::vector<RayOf<T>>&
   expect_nearest<T>(tree, rays, expected, {.path = path});
   expect_calls<T>(tree, rays, expected, path);
   expect_lists<T>(tree, rays, expected, path);
-  expect_next<T>(tree, rays, expected, {.path = path});
+  expect_after<T>(tree, rays, expected, {.path = path});
   if (!many) return;
   expect_nearest<T>(tree, repeated(rays), expected, {.path = path, .threads = 2});
   expect_lists<T>(tree, repeated(rays), expected, path);
   TraceOptionsOf<T> together{.path = path, .threads = 2};
   if constexpr (requires { together.mode; }) together.mode = TraversalMode::stream;
-  expect_next<T>(tree, rays, expected, together);
+  expect_after<T>(tree, rays, expected, together);
 }
 
 template <class T>

@@ -1,7 +1,7 @@
 #include "worlds.hpp"
 
 #include "../../../bench/support/scenes/shapes.hpp"
-#include "../../oracles/passage_oracle.hpp"
+#include "../../oracles/closest_crossing_oracle.hpp"
 
 namespace raylanes::testing {
 

@@ -57,7 +57,7 @@ UserBalls user_balls(std::size_t count, Random& random) {
 
 // In the order of t, then of primitives, each once.
 std::vector<Hit> in_order(std::vector<Hit> hits) {
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return is_behind(b, a); });
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return comes_after(b, a); });
   const auto same = [](const Hit& a, const Hit& b) { return a.t == b.t && a.primitive == b.primitive; };
   hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   return hits;

@@ -94,7 +94,7 @@ TEST(Mixed, has_top_levels_of_triangles_and_of_others) {
   std::vector<InstanceBounds> bounds;
   for (int i = 0; i < 20; ++i) {
     instances.emplace_back(0, moved_by(static_cast<float>(i), 0, 0), ~0u);
-    instances.back().tree = i % 4 == 1 ? nullptr : TreeOf::ready(tree);
+    instances.back().tree = i % 4 == 1 ? nullptr : TreeAccess::ready(tree);
     bounds.push_back(bounds_of(instances.back(), tree.bounds(), 0));
   }
   const std::vector<TopLevel> tops = tops_over(instances, bounds);

@@ -31,7 +31,7 @@ struct Opened {
     std::vector<InstanceBounds> bounds;
     for (const Transform& transform : transforms) {
       instances.emplace_back(0, transform, ~0u);
-      instances.back().tree = TreeOf::ready(tree);
+      instances.back().tree = TreeAccess::ready(tree);
       bounds.push_back(bounds_of(instances.back(), tree.bounds(), 0));
     }
     tops = tops_over(instances, bounds);

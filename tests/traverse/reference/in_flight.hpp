@@ -11,7 +11,7 @@ namespace raylanes::testing {
 // Not while others query the tree. Without effect on an empty one.
 template <class Tree>
 void let_rays_fly(const Tree& tree, bool fly = true) {
-  if (const auto* arrays = TreeOf::arrays(tree); arrays != nullptr)
+  if (const auto* arrays = TreeAccess::arrays(tree); arrays != nullptr)
     const_cast<std::remove_const_t<std::remove_pointer_t<decltype(arrays)>>*>(arrays)->rays_wait = fly;
 }
 

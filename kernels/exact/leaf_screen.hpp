@@ -1,4 +1,4 @@
-// The float filter of the exact test where many rays meet the triangles of a leaf: Möller, Trumbore 1997 with bounds of
+// The float screen of the exact test where many rays meet the triangles of a leaf: Möller, Trumbore 1997 with bounds of
 // its errors. Edges, normal and what the bounds take from them are computed once for all rays. docs/exact.md, part 6,
 // derives the bounds.
 //   s = v0 − o, c = s × d:  weights U = e2 · c, V = −e1 · c, W = det − U − V,  det = n · d,  t = n · s / det
@@ -30,22 +30,22 @@ inline V length_above(const Vec3<V>& d) {
 
 // T: float or double.
 template <class T>
-class LeafFilterOf : Arithmetic<Grade::fast> {
+class LeafScreenOf : Arithmetic<Grade::fast> {
  public:
   // row(i): number i of the triangles. farthest: at least the distance along an axis from any origin to a corner.
-  // Corners times `scale`, a power of two, and so are the rays that the filter is asked about: numbers that are not
+  // Corners times `scale`, a power of two, and so are the rays that the screen is asked about: numbers that are not
   // small are not flushed.
   template <class Rows>
-  LeafFilterOf(const Rows& row, int triangles, T farthest, T scale) {
+  LeafScreenOf(const Rows& row, int triangles, T farthest, T scale) {
     for (int first = 0; first < triangles; first += leaf_lanes<T>)
       prepare<leaf_lanes<T>>(row, first, farthest * scale, scale);
   }
 
   // length: length_above() of the directions. Without a branch: one in three registers has a ray that is hit, and
   // nothing foretells which.
-  template <class V, class Range, class Sides = BothSides>
-  FilterResult<V, MaskOf<V>> classify(const RayLanes<V>& rays, V length, int triangle, const Range& range,
-                                      Sides sides = {}) const {
+  template <class V, class Range, class Sides = NoRule>
+  Verdict<V, MaskOf<V>> classify(const RayLanes<V>& rays, V length, int triangle, const Range& range,
+                                 Sides sides = {}) const {
     const auto number = [&](int k) { return V(number_[k][triangle]); };
     const auto vector = [&](int k) { return Vec3<V>(number(k), number(k + 1), number(k + 2)); };
     Vec3<V> s = vector(corner) - rays.origin, c = cross(s, rays.direction), n = vector(normal);
@@ -122,9 +122,9 @@ class LeafFilterOf : Arithmetic<Grade::fast> {
   alignas(64) T number_[count][tree_width];
 };
 
-struct LeafFilter : LeafFilterOf<float> {
-  LeafFilter(const LeafBlock<9>& block, int triangles, float farthest, float scale)
-      : LeafFilterOf([&](int i) { return block.number[i]; }, triangles, farthest, scale) {}
+struct LeafScreen : LeafScreenOf<float> {
+  LeafScreen(const LeafBlock<9>& block, int triangles, float farthest, float scale)
+      : LeafScreenOf([&](int i) { return block.number[i]; }, triangles, farthest, scale) {}
 };
 
 }  // namespace

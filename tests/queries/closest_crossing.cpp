@@ -1,20 +1,20 @@
-// The next passage of rays through a surface: each once at edges and corners, and nowhere where rays only touch.
-#include "../oracles/passage_oracle.hpp"
+// The closest crossing of rays and a surface: each once at edges and corners, and nowhere where rays only touch.
+#include "../oracles/closest_crossing_oracle.hpp"
 #include "worlds/worlds.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-// A closed mesh that does not cross itself is entered and left by turns, and left at last, though passages of one
+// A closed mesh that does not cross itself is entered and left by turns, and left at last, though crossings of one
 // rounded t come in any order.
-TEST(Passages, enter_and_leave_by_turns) {
+TEST(ClosestCrossing, enter_and_leave_by_turns) {
   std::size_t touched = 0;
   for (const Mesh& mesh : {cube(-1, 1), dented_cube(), double_fan(9, 0.3f), double_fan(30, 0.0f)}) {
     std::vector<Ray> rays = aimed_rays(mesh, by_level(300), 3, 206);
     for (Ray& ray : rays) ray.tmin = 0, ray.tmax = infinity;
     for (const Ray& ray : touching_rays(mesh, by_level(4000), 207)) rays.push_back(ray);
     for (const Ray& ray : rays)
-      touched += oracle_hits(mesh, ray).size() > oracle_passages(mesh, ray).size() ? 1 : 0;
+      touched += oracle_hits(mesh, ray).size() > oracle_closest_crossings(mesh, ray).size() ? 1 : 0;
     each_tree(mesh, [&](const auto& tree, const Path* path) {
       std::vector<Location> locations(rays.size());
       tree.locate(VertexView(rays.data(), rays.size(), sizeof(Ray)), locations, {.path = path});
@@ -38,7 +38,7 @@ TEST(Passages, enter_and_leave_by_turns) {
 struct Flight {
   Ray ray;
   Facing facing;
-  float t;  // of the passage; infinity: there is none
+  float t;  // of the crossing; infinity: there is none
 };
 void expect_flights(const Mesh& mesh, std::initializer_list<Flight> flights) {
   const Bvh bvh(mesh);
@@ -54,7 +54,7 @@ void expect_flights(const Mesh& mesh, std::initializer_list<Flight> flights) {
   }
 }
 
-TEST(Passages, of_a_box) {
+TEST(ClosestCrossing, of_a_box) {
   expect_flights(cube(-1, 1),
                  {
                      {make_ray({0, 0, 0}, {1, 0, 0}), Facing::back, 1},          // through a diagonal
@@ -72,7 +72,7 @@ TEST(Passages, of_a_box) {
 }
 
 // Rays in the solid that touch an edge of the dent, or its tip, go on.
-TEST(Passages, of_a_dented_cube) {
+TEST(ClosestCrossing, of_a_dented_cube) {
   expect_flights(dented_cube(), {
                                     {make_ray({0, 0, -1}, {0, 0, 1}), Facing::back, 1},  // by the tip
                                     {make_ray({-1, 0, 0}, {1, 0, 0}), Facing::back, 3},  // touches the tip
@@ -83,7 +83,7 @@ TEST(Passages, of_a_dented_cube) {
                                 });
 }
 
-TEST(Passages, of_two_overlapping_cubes) {
+TEST(ClosestCrossing, of_two_overlapping_cubes) {
   Mesh mesh = cube(-1, 1);
   append(mesh, cube(0, 2));
   expect_flights(mesh, {
@@ -96,8 +96,8 @@ TEST(Passages, of_two_overlapping_cubes) {
                        });
 }
 
-// Layers less than an ULP apart are two passages, also through their edges.
-TEST(Passages, of_a_sheet_thinner_than_an_ulp) {
+// Layers less than an ULP apart are two crossings, also through their edges.
+TEST(ClosestCrossing, of_a_sheet_thinner_than_an_ulp) {
   const float z = 1, above = std::nextafter(1.0f, 2.0f);
   Mesh mesh;
   for (const float at : {z, above})

@@ -1,5 +1,5 @@
-// Passages by their definition in rational numbers: the hits that are crossings, but for glances. The point at which a
-// ray meets a plane says on which edge it is; weights are not asked.
+// Closest crossings by their definition in rational numbers: the hits that are crossings, but for glances. The point at
+// which a ray meets a plane says on which edge it is; weights are not asked.
 #pragma once
 
 #include "../../bench/support/oracles/rational_vectors.hpp"
@@ -32,8 +32,9 @@ std::set<Point> met_corners(const AnyRay& ray, const Point (&corners)[3]) {
 
 // Hits and crossings are those that are there for the ray.
 template <class AnyMesh, class AnyRay, class AnyHit, class AnyCrossing>
-std::vector<AnyHit> oracle_passages(const AnyMesh& mesh, const AnyRay& ray, const std::vector<AnyHit>& hits,
-                                    const std::vector<AnyCrossing>& crossings) {
+std::vector<AnyHit> oracle_closest_crossings(const AnyMesh& mesh, const AnyRay& ray,
+                                             const std::vector<AnyHit>& hits,
+                                             const std::vector<AnyCrossing>& crossings) {
   using Point = typename decltype(mesh.vertices)::value_type;
   struct Passing {
     AnyHit hit;
@@ -48,7 +49,7 @@ std::vector<AnyHit> oracle_passages(const AnyMesh& mesh, const AnyRay& ray, cons
     for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[hit.primitive][k]];
     passing.push_back({hit, own->side, {corners, corners + 3}, met_corners(ray, corners)});
   }
-  std::vector<AnyHit> passages;
+  std::vector<AnyHit> closest_crossings;
   for (const Passing& own : passing) {
     int sum = 0, before = 0;
     bool is_alone = true;
@@ -57,16 +58,16 @@ std::vector<AnyHit> oracle_passages(const AnyMesh& mesh, const AnyRay& ray, cons
       sum += other.side, is_alone = is_alone && other.corners == own.corners;
       before += other.side == own.side && other.hit.primitive < own.hit.primitive ? 1 : 0;
     }
-    if (own.met.empty() || is_alone || before < sum * own.side) passages.push_back(own.hit);
+    if (own.met.empty() || is_alone || before < sum * own.side) closest_crossings.push_back(own.hit);
   }
-  return passages;
+  return closest_crossings;
 }
 
-// The passages of all triangles but one.
+// The crossings of all triangles but one.
 template <class AnyMesh, class AnyRay>
-auto oracle_passages(const AnyMesh& mesh, const AnyRay& ray, std::uint32_t skipped = no_primitive) {
-  return oracle_passages(mesh, ray, oracle_hits(mesh, ray, Facing::any, skipped),
-                         oracle::exact_crossings(mesh, ray));
+auto oracle_closest_crossings(const AnyMesh& mesh, const AnyRay& ray, std::uint32_t skipped = no_primitive) {
+  return oracle_closest_crossings(mesh, ray, oracle_hits(mesh, ray, Facing::any, skipped),
+                                  oracle::exact_crossings(mesh, ray));
 }
 
 // From points that are multiples of a half to corners and middles of edges, which floats hold.

@@ -1,4 +1,4 @@
-"""The next passage of rays through a surface, in trees of both types and in scenes."""
+"""The closest crossing of rays and a surface, in trees of both types and in scenes."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ touching = ([[0, 0, 0], [2, 0, 0], [-3, 0, 0]], [[1, 1, 0], [-1, 1, 0], [1, 0, 0
 
 
 @pytest.mark.parametrize("kind, dtype", kinds)
-def test_each_passage_counts_once(kind, dtype):
+def test_each_crossing_counts_once(kind, dtype):
     tree, rays = cube(kind, dtype=dtype), raylanes.rays(*touching, dtype=dtype)
     assert tree.closest(rays).t.tolist() == [1, 1, 2]
     entered = tree.closest_crossing(rays)
@@ -34,7 +34,7 @@ def test_each_passage_counts_once(kind, dtype):
 
 
 @pytest.mark.parametrize("kind, dtype", kinds)
-def test_passages_off_edges_are_the_first_crossings(kind, dtype):
+def test_closest_crossings_off_edges_are_the_first_crossings(kind, dtype):
     vertices, faces, rays = lattice(7)
     rays["direction"] += np.random.default_rng(1).uniform(-0.01, 0.01, rays["direction"].shape)
     tree = kind(vertices.astype(dtype), faces, dtype=dtype)
@@ -44,7 +44,7 @@ def test_passages_off_edges_are_the_first_crossings(kind, dtype):
             assert hit["primitive"] == (crossings.primitive[0] if len(crossings) else raylanes.no_primitive)
 
 
-def test_passages_in_scenes():
+def test_closest_crossings_in_scenes():
     scene, rays = raylanes.Scene(), raylanes.rays(*touching)
     part = scene.add(cube())
     scene.place(part, mask=1)

@@ -1,4 +1,4 @@
-// Rays whose callers are asked about hits, and the nearest hit behind an earlier one, which asks nobody: a search from
+// Rays whose callers are asked about hits, and the nearest hit after an earlier one, which asks nobody: a search from
 // the earlier hit's t on.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace {
 using ExactOfAsked = Exact<Grade::reproducible>;
 
 template <bool first_one, class Known>
-using KeptFloat = KeptHit<float, first_one, ChosenTriangles, RestOfSegment<float>, Known>;
+using KeptFloat = KeptHit<float, first_one, HitRule, RestOfSegment<float>, Known>;
 
 // A ray and the part of it that is left, which is not empty.
 struct AskingRay {
@@ -60,7 +60,7 @@ inline Hit kept_by(const TreeView& tree, const AskingRay& of, Counters& counters
 template <bool first_one, class Counters>
 inline Hit kept_hit(const TreeView& tree, const Ray& ray, const AskedOf<float>& asked, Counters& counters) {
   Ray rest = ray;
-  rest.tmin = begin_behind(asked.after, ray.tmin);
+  rest.tmin = begin_after(asked.after, ray.tmin);
   if (tree.root == empty_reference || !(rest.tmin <= rest.tmax)) return {};
   return kept_by<first_one>(tree, {ray, rest, asked}, counters);
 }
@@ -86,7 +86,7 @@ bool any_kept(const TreeView& tree, const Ray& ray, const AskedOf<float>& asked)
 #endif
 
 template <class Counters>
-[[gnu::flatten, gnu::noinline]] void next_hits(const TreeView& tree, const TraceBatch& batch) {
+[[gnu::flatten, gnu::noinline]] void hits_after(const TreeView& tree, const TraceBatch& batch) {
   [[maybe_unused]] Counters counters(batch);
   AskedOf<float> asked;
   asked.facing = batch.facing;

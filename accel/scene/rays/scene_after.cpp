@@ -1,6 +1,6 @@
-// Hits in scenes behind others.
+// Hits in scenes after others.
 
-#include "../../queries/next.hpp"
+#include "../../queries/after.hpp"
 #include "../scene_parts.hpp"
 
 namespace raylanes {
@@ -11,19 +11,19 @@ void require_exact_in_scene(const TraceOptions& options) {
         "scene: next hits and filters take the test exact alone; others have no order of hits");
 }
 
-SceneHit last_hit(const AfterView& after, std::size_t i) {
+SceneHit hit_of_after(const AfterView& after, std::size_t i) {
   const Hit hit = after[i];
   return {hit.t, hit.u, hit.v, hit.primitive, no_part, after.instance(i)};
 }
 
-void trace_next(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
-                const TraceOptions& options) {
+void trace_after(const SceneQuery& query, const RaySource& rays, const SceneHitView& hits,
+                 const TraceOptions& options) {
   over_calls(
-      plan_of_next(options.threads, options.counters, options.progress), rays, HitSink<SceneHit>{hits},
+      plan_of_singles(options.threads, options.counters, options.progress), rays, HitSink<SceneHit>{hits},
       [](std::size_t n) { return n * sizeof(SceneHit); },
       [&](const RayCall<SceneHit>& call) {
         auto* const last = static_cast<SceneHit*>(call.scratch);  // hits may lie where answers go
-        for (std::size_t k = 0; k < call.size; ++k) last[k] = last_hit(options.after, call.indices[k]);
+        for (std::size_t k = 0; k < call.size; ++k) last[k] = hit_of_after(options.after, call.indices[k]);
         SceneQuery counted = query;
         counted.choice.counters = call.counters;
         trace_scene(counted, {call.rays, call.size, call.answers, nullptr, call.indices, last});
@@ -43,7 +43,7 @@ void require_triangles(const Scene& scene, const TraceOptions& options) {
   require_exact_in_scene(options);
   for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
     if (scene.tree(i) == nullptr)
-      throw std::invalid_argument("scene: passages are of triangles alone, geometry " + std::to_string(i) +
+      throw std::invalid_argument("scene: crossings are of triangles alone, geometry " + std::to_string(i) +
                                   " has other primitives");
 }
 

@@ -1,9 +1,9 @@
-// The passages of any rays through trees over meshes of any bits.
+// The closest crossings of any rays through trees over meshes of any bits.
 #pragma once
 
 #include <raylanes/stretches.hpp>
 
-#include "../oracles/passage_oracle.hpp"
+#include "../oracles/closest_crossing_oracle.hpp"
 #include "../support/same_bytes.hpp"
 #include "fence.hpp"
 #include "support.hpp"
@@ -44,10 +44,10 @@ void expect_stretches(const Tree& tree, const std::vector<AnyRay>& rays, const P
   }
 }
 
-// The first passages, and those behind them, in place.
+// The closest crossings, and the ones after them, in place.
 template <class Tree, class AnyMesh, class AnyRay, class Options>
-void expect_passages(const Tree& tree, const AnyMesh& mesh, const std::vector<AnyRay>& rays,
-                     Options options) {
+void expect_closest_crossings(const Tree& tree, const AnyMesh& mesh, const std::vector<AnyRay>& rays,
+                              Options options) {
   using AnyHit = typename decltype(oracle_hits(mesh, rays[0]))::value_type;
   constexpr std::size_t max_rays = 64;
   static Fence fence(max_rays * sizeof(AnyHit));
@@ -55,7 +55,7 @@ void expect_passages(const Tree& tree, const AnyMesh& mesh, const std::vector<An
   std::vector<std::vector<AnyHit>> expected;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     expected.push_back(
-        oracle_passages(mesh, rays[i], options.skip.count > 0 ? options.skip[i] : no_primitive));
+        oracle_closest_crossings(mesh, rays[i], options.skip.count > 0 ? options.skip[i] : no_primitive));
     const auto sided = oracle_hits(mesh, rays[i], options.facing);
     std::erase_if(expected[i], [&](const AnyHit& hit) {
       return std::ranges::find(sided, hit.primitive, &AnyHit::primitive) == sided.end();
@@ -63,10 +63,10 @@ void expect_passages(const Tree& tree, const AnyMesh& mesh, const std::vector<An
   }
   for (std::size_t layer = 0; layer < 2; ++layer) {
     tree.closest_crossing(rays, hits, options);
-    fence.expect_intact("passages");
+    fence.expect_intact("closest crossing");
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (!same_bytes(hits[i], layer < expected[i].size() ? expected[i][layer] : AnyHit()))
-        fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": passage " +
+        fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": closest crossing " +
              std::to_string(layer));
     options.after = hits;
   }

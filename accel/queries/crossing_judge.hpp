@@ -1,11 +1,11 @@
-// Which hits are passages through a surface, as docs/crossings.md defines them. Almost all are seen to be from their
+// Which hits are crossings of a surface, as docs/crossings.md defines them. Almost all are seen to be from their
 // numbers. A hit that may be on an edge is looked for among the crossings around it.
 #pragma once
 
 #include "../../dispatch/bits.hpp"
 #include "../mesh/boundary.hpp"
+#include "after.hpp"
 #include "lists.hpp"
-#include "next.hpp"
 
 namespace raylanes {
 
@@ -45,23 +45,23 @@ struct MetEdge {
   }
 };
 
-// Says of hits that may touch an edge whether they are passages.
+// Says of hits that may touch an edge whether they are crossings.
 template <class T>
-class PassageJudge {
+class CrossingJudge {
  public:
   template <class Tree, class Options>
-  PassageJudge(const Tree& tree, const Options& options)
+  CrossingJudge(const Tree& tree, const Options& options)
       : maker_(checked_maker("closest_crossing", ListKind::sides, tree, options_of_lists(options))) {}
 
   bool operator()(const RayOf<T>& ray, std::uint32_t skipped, const HitOf<T>& hit) const {
-    bool is_passage = false;
+    bool is_crossing = false;
     const RayOf<T> around = part_around(ray, hit.t);
     const RaySourceOf<T> rays{.records = RayRecords<RayOf<T>>(&around, 1), .skip = skipped};
     each_list<ListEntryOf<T>>(maker_, rays, 0, 1, maker_.counters,
                               [&](std::size_t, std::span<ListEntryOf<T>> sides) {
-                                is_passage = is_among(distinct(sides), hit.primitive);
+                                is_crossing = is_among(distinct(sides), hit.primitive);
                               });
-    return is_passage;
+    return is_crossing;
   }
 
  private:
