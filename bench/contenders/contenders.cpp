@@ -5,7 +5,7 @@ namespace {
 
 // The lanes of a mode's packets.
 std::size_t lanes_of(EmbreeMode mode) {
-  constexpr std::size_t lanes[] = {1, 4, 8, 16, 1};
+  constexpr std::size_t lanes[] = {1, 4, 8, 16, 1, 16};
   return lanes[static_cast<std::size_t>(mode)];
 }
 
@@ -102,24 +102,28 @@ std::vector<Contender> embree_callers(const EmbreeContender& embree) {
           packed_contender("call_packed", embree, EmbreeMode::single, false)};
 }
 
-std::vector<Contender> embree_contenders(const EmbreeContender& embree,
+std::vector<Contender> embree_contenders(const EmbreeContender& embree, bool are_scattered,
                                          std::span<const std::size_t> streams) {
   std::vector<Contender> contenders{converting_contender("single", embree, EmbreeMode::single, false, 1)};
   const auto add_both = [&](const std::string& name, EmbreeMode mode, std::size_t batch) {
     contenders.push_back(converting_contender(name, embree, mode, false, batch));
-    contenders.push_back(converting_contender(name + "_coherent", embree, mode, true, batch));
+    if (!are_scattered)
+      contenders.push_back(converting_contender(name + "_coherent", embree, mode, true, batch));
   };
   const std::pair<const char*, EmbreeMode> packets[] = {
       {"packet4", EmbreeMode::packet4}, {"packet8", EmbreeMode::packet8}, {"packet16", EmbreeMode::packet16}};
   for (const auto& [name, mode] : packets)
     if (embree.native(mode)) add_both(name, mode, lanes_of(mode));
   for (const std::size_t batch : streams)
-    if (batch > 0 && batch <= max_embree_stream && embree.native(EmbreeMode::stream))
-      add_both("stream", EmbreeMode::stream, batch);
+    for (const auto& [name, mode] :
+         {std::pair("stream", EmbreeMode::stream), std::pair("packet_stream", EmbreeMode::packet_stream)})
+      if (batch >= lanes_of(mode) && batch <= max_embree_stream && embree.native(mode))
+        add_both(name, mode, batch);
   for (const auto& [name, mode] : {packets[2], packets[1], packets[0]}) {
     if (!embree.native(mode)) continue;
     contenders.push_back(packed_contender(std::string(name) + "_packed", embree, mode, false));
-    contenders.push_back(packed_contender(std::string(name) + "_coherent_packed", embree, mode, true));
+    if (!are_scattered)
+      contenders.push_back(packed_contender(std::string(name) + "_coherent_packed", embree, mode, true));
     break;
   }
   return contenders;

@@ -49,10 +49,11 @@ Contender our_caller(const TriangleTree& tree, const TraceOptions& options, bool
 // rays of their own; `call_packed` has rays in Embree's layout beforehand. The Embree scene must outlive both.
 std::vector<Contender> embree_callers(const EmbreeContender& embree);
 
-// All of Embree's modes that its instruction set has natively: single rays, and packets with and without the
-// hint that they are coherent; the widest of its packets again from rays that lie in its layout before the clock
-// starts, NAME_packed; and streams of so many rays a call, 0: none. The Embree scene must outlive them.
-std::vector<Contender> embree_contenders(const EmbreeContender& embree,
+// All of Embree's modes that its instruction set has natively: single rays; packets; the widest of its packets again
+// from rays that lie in its layout before the clock starts, NAME_packed; and streams of so many rays a call, of records
+// and of whole packets, 0: none. Packets and streams go with the hint that they are coherent, too, NAME_coherent, if
+// rays are not scattered: scattered ones take twice the time with it. The Embree scene must outlive the contenders.
+std::vector<Contender> embree_contenders(const EmbreeContender& embree, bool are_scattered,
                                          std::span<const std::size_t> streams = {});
 
 }  // namespace raylanes::bench

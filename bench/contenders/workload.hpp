@@ -24,6 +24,11 @@ inline std::string name_of(RayKind kind) {
   return std::string(ray_kind_names[static_cast<std::size_t>(kind)]);
 }
 
+// Whether neighbouring rays go everywhere.
+inline bool are_scattered(RayKind kind) {
+  return kind == RayKind::diffuse || kind == RayKind::ao || kind == RayKind::random;
+}
+
 // The rays of a scene at a resolution, made once from the primary hits of the default kernels (watertight,
 // reproducible), so that all contenders trace the same ones.
 class Workload {

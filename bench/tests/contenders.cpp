@@ -45,7 +45,8 @@ TEST_F(Contenders, every_mode_of_embree_answers_right_and_leaves_the_processor_a
       }
       const oracle::Form form =
           build == EmbreeBuild::robust ? oracle::Form::embree_robust : oracle::Form::embree_fast;
-      for (const Contender& contender : embree_contenders(*embree, std::vector<std::size_t>{0, 100}))
+      for (const Contender& contender :
+           embree_contenders(*embree, false, std::vector<std::size_t>{0, 10, 100}))
         for (const RayKind kind :
              {RayKind::primary, RayKind::shadow, RayKind::light, RayKind::diffuse, RayKind::ao}) {
           const Agreement agreement = compare(contender, workload_.rays(kind), form);

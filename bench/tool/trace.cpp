@@ -356,10 +356,10 @@ void add_trace_command(CLI::App& tool) {
              "rays for each pixel, stratified: 4, 9, 16, 25 …; 1: through its centre");
   add_choice(*command, "--order", trace.order, pixel_order_names,
              "order of pixels; secondary rays follow them");
-  add_numbers(
-      *command, "--batch", trace.batches, {0, max_batch},
-      "rays in each call, such as 65536,4096,256, with --against embree also of its streams; 0: all at "
-      "once");
+  add_numbers(*command, "--batch", trace.batches, {0, max_batch},
+              "rays in each call, such as 65536,4096,256; 0: all at once");
+  add_numbers(*command, "--streams", trace.streams, {1, max_embree_stream},
+              "with --against embree: rays in each call of its streams (default: as --batch, up to 1024)");
   command->add_flag("--skip", trace.skips,
                     "leave out the triangle that a secondary ray begins on, as renderers do");
   command->add_flag("--warm", trace.warm,

@@ -104,6 +104,7 @@ void with_packet(EmbreeMode mode, const With& with) {
     case EmbreeMode::packet8:
       return with.template operator()<typename Query::template Packet<Width8>, 8>();
     case EmbreeMode::packet16:
+    case EmbreeMode::packet_stream:
       return with.template operator()<typename Query::template Packet<Width16>, 16>();
   }
 }
@@ -113,14 +114,14 @@ struct Numbering {
   std::vector<std::uint32_t> first;  // of each part's triangles; empty: there is one mesh
   bool are_instances = false;
 
-  template <typename Packet>
-  void renumber(const Packet& packet, std::span<Hit> hits) const {
-    if (first.empty()) return;
-    for (std::size_t lane = 0; lane < hits.size(); ++lane)
-      if (hits[lane]) hits[lane].primitive += first[packet.part(lane, are_instances)];
+  // Writes what a packet has found.
+  template <typename Packet, typename Result>
+  void write(const Packet& packet, std::span<Result> results) const {
+    packet.write(results.data());
+    if constexpr (std::is_same_v<Result, Hit>)
+      for (std::size_t lane = 0; !first.empty() && lane < results.size(); ++lane)
+        if (results[lane]) results[lane].primitive += first[packet.part(lane, are_instances)];
   }
-  template <typename Packet>
-  void renumber(const Packet&, std::span<std::uint8_t>) const {}
 };
 
 template <typename Query>
@@ -132,27 +133,33 @@ void trace(RTCScene scene, const Numbering& numbering, EmbreeMode mode, bool coh
       Packet packet;
       packet.lay_out(in);
       packet.trace(scene, context);
-      packet.write(out);
-      numbering.renumber(packet, std::span(out, lanes));
+      numbering.write(packet, std::span(out, lanes));
     });
   });
 }
 
+// Whole packets: `size` rays of a call are rounded up to them.
 template <typename Query>
-void trace_stream(RTCScene scene, const Numbering& numbering, bool coherent, std::size_t size,
-                  std::span<const Ray> rays, std::span<typename Query::Result> results) {
-  using Single = typename Query::Single;
+void trace_stream(RTCScene scene, const Numbering& numbering, EmbreeMode mode, bool coherent,
+                  std::size_t size, std::span<const Ray> rays, std::span<typename Query::Result> results) {
   RTCIntersectContext context = make_context(coherent);
-  std::vector<Single> stream(std::min({size, rays.size(), max_embree_stream}));
-  for (std::size_t begin = 0, count; begin < rays.size(); begin += count) {
-    count = std::min(stream.size(), rays.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) stream[i].lay_out(&rays[begin + i]);
-    Single::stream(scene, &context, &stream[0].query, static_cast<unsigned>(count), sizeof(Single));
-    for (std::size_t i = 0; i < count; ++i) {
-      stream[i].write(&results[begin + i]);
-      numbering.renumber(stream[i], results.subspan(begin + i, 1));
+  with_packet<Query>(mode, [&]<typename Packet, std::size_t lanes>() {
+    using Result = typename Query::Result;
+    const std::size_t most = std::min({size, rays.size(), max_embree_stream});
+    std::vector<Packet> stream((most + lanes - 1) / lanes);
+    for (std::size_t begin = 0, count; begin < rays.size(); begin += count) {
+      count = std::min(stream.size() * lanes, rays.size() - begin);
+      const std::span<const Ray> in = rays.subspan(begin, count);
+      const std::span<Result> out = results.subspan(begin, count);
+      std::size_t at = 0;
+      for_each_packet<lanes>(in, out, [&](const Ray* ray, Result*) { stream[at++].lay_out(ray); });
+      Packet::trace_stream(scene, context, std::span(stream).first(at));
+      at = 0;
+      for_each_packet<lanes>(in, out, [&](const Ray*, Result* result) {
+        numbering.write(stream[at++], std::span(result, lanes));
+      });
     }
-  }
+  });
 }
 
 template <typename Query>
@@ -171,8 +178,7 @@ double trace_packed(RTCScene scene, const Numbering& numbering, EmbreeMode mode,
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
     at = 0;
     for_each_packet<lanes>(rays, results, [&](const Ray*, Result* out) {
-      packets[at].write(out);
-      numbering.renumber(packets[at++], std::span(out, lanes));
+      numbering.write(packets[at++], std::span(out, lanes));
     });
   });
   return seconds;
@@ -314,7 +320,8 @@ double EmbreeContender::move(std::span<const Float3> vertices) {
 bool EmbreeContender::native(EmbreeMode mode) const {
   constexpr RTCDeviceProperty of_modes[] = {
       RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED,
-      RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED, RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED};
+      RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED, RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED,
+      RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED};
   return mode == EmbreeMode::single ||
          rtcGetDeviceProperty(scene_->device, of_modes[static_cast<std::size_t>(mode) - 1]) != 0;
 }
@@ -323,8 +330,8 @@ void EmbreeContender::trace(EmbreeMode mode, bool coherent, const RaySet& set, A
                             std::size_t batch) const {
   const SubnormalsAreZero subnormals;
   by_query(set, answers, [&]<typename Query>(Query, std::span<typename Query::Result> results) {
-    if (mode == EmbreeMode::stream)
-      trace_stream<Query>(scene_->scene, scene_->numbering, coherent, batch, set.rays, results);
+    if (mode == EmbreeMode::stream || mode == EmbreeMode::packet_stream)
+      trace_stream<Query>(scene_->scene, scene_->numbering, mode, coherent, batch, set.rays, results);
     else
       bench::trace<Query>(scene_->scene, scene_->numbering, mode, coherent, set.rays, results);
   });

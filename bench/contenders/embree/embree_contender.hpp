@@ -13,9 +13,9 @@ namespace raylanes::bench {
 struct RaySet;
 struct Answers;
 
-// How many rays one call of Embree takes: one, a packet, or any number. A width that the instruction set does not have
-// natively still works: Embree then splits the packet itself.
-enum class EmbreeMode { single, packet4, packet8, packet16, stream };
+// How many rays one call of Embree takes: one, a packet, or any number, as records or as packets of 16. A width that
+// the instruction set does not have natively still works: Embree then splits the packet itself.
+enum class EmbreeMode { single, packet4, packet8, packet16, stream, packet_stream };
 inline constexpr std::size_t max_embree_stream = 1024;  // rays: longer streams are several calls
 
 // Its trees: of medium quality, its default; of high quality, with spatial splits; robust, of medium quality, without

@@ -135,6 +135,7 @@ void write_four_flags(const Packet& packet, std::size_t at, const std::int32_t* 
   for (int lane = 0; lane < 4; ++lane) flags[lane] = static_cast<std::uint8_t>((mask >> lane) & 1);
 }
 
+// Packets: streams of them are rtcIntersectNM and rtcOccludedNM.
 template <std::size_t n, class PacketRays, class PacketRayHits, auto intersect, auto occluded>
 struct Width {
   static constexpr std::size_t lanes = n;
@@ -162,6 +163,10 @@ struct ClosestPacket {
     }
   }
   void trace(RTCScene scene, RTCIntersectContext& context) { W::closest(valid, scene, &context, &packet); }
+  static void trace_stream(RTCScene scene, RTCIntersectContext& context, std::span<ClosestPacket> stream) {
+    rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(&stream[0].packet), W::lanes,
+                   static_cast<unsigned>(stream.size()), sizeof(ClosestPacket));
+  }
   void write(Hit* hits) const {
     for (std::size_t at = 0; at < W::lanes; at += 4) write_four_hits(packet, at, hits + at);
   }
@@ -179,6 +184,10 @@ struct AnyPacket {
     for (std::size_t at = 0; at < W::lanes; at += 4) store_four(rays, packet, at, valid);
   }
   void trace(RTCScene scene, RTCIntersectContext& context) { W::any(valid, scene, &context, &packet); }
+  static void trace_stream(RTCScene scene, RTCIntersectContext& context, std::span<AnyPacket> stream) {
+    rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(&stream[0].packet), W::lanes,
+                  static_cast<unsigned>(stream.size()), sizeof(AnyPacket));
+  }
   void write(std::uint8_t* flags) const {
     for (std::size_t at = 0; at < W::lanes; at += 4) write_four_flags(packet, at, valid, flags + at);
   }
@@ -212,7 +221,6 @@ inline RTCRay single_ray(const Ray& ray) {
 
 // A ray in Embree's layout; where Embree must not see it, one that hits nothing.
 struct ClosestRay {
-  static constexpr auto stream = rtcIntersect1M;
   RTCRayHit query;
 
   void lay_out(const Ray* ray) {
@@ -221,6 +229,10 @@ struct ClosestRay {
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
   void trace(RTCScene scene, RTCIntersectContext& context) { rtcIntersect1(scene, &context, &query); }
+  static void trace_stream(RTCScene scene, RTCIntersectContext& context, std::span<ClosestRay> stream) {
+    rtcIntersect1M(scene, &context, &stream[0].query, static_cast<unsigned>(stream.size()),
+                   sizeof(ClosestRay));
+  }
   void write(Hit* hit) const {
     const bool misses = query.hit.geomID == RTC_INVALID_GEOMETRY_ID;
     *hit = misses ? Hit{infinity, 0, 0, no_primitive}
@@ -232,11 +244,13 @@ struct ClosestRay {
 };
 
 struct AnyRay {
-  static constexpr auto stream = rtcOccluded1M;
   RTCRay query;
 
   void lay_out(const Ray* ray) { query = single_ray(traceable(*ray) ? *ray : nothing); }
   void trace(RTCScene scene, RTCIntersectContext& context) { rtcOccluded1(scene, &context, &query); }
+  static void trace_stream(RTCScene scene, RTCIntersectContext& context, std::span<AnyRay> stream) {
+    rtcOccluded1M(scene, &context, &stream[0].query, static_cast<unsigned>(stream.size()), sizeof(AnyRay));
+  }
   void write(std::uint8_t* flag) const { *flag = query.tfar == -infinity ? 1 : 0; }
 };
 

@@ -240,6 +240,9 @@ class Tracer {
     if (!answers.same_bytes(plain)) check_->complain(entry, "other bytes when counted");
   }
 
+  const std::vector<std::size_t>& streams() const {
+    return options_.streams.empty() ? options_.batches : options_.streams;
+  }
   void add_embree(std::vector<Entry>& entries, const Question& question, const std::string& isa,
                   const NamedEmbree& named) const {
     const auto& [name, build, embree] = named;
@@ -248,7 +251,8 @@ class Tracer {
     const std::vector<std::size_t> all_at_once{0};
     const bool are_sized = options_.batches != all_at_once;
     if (!options_.modes.empty())
-      contenders = embree_contenders(*embree, is_robust ? all_at_once : options_.batches);
+      contenders =
+          embree_contenders(*embree, are_scattered(question.kind), is_robust ? all_at_once : streams());
     if (options_.calls)
       for (Contender& caller : embree_callers(*embree)) contenders.push_back(std::move(caller));
     // Debian's Embree 3.13 does not return from packets of any-hit rays through instances with AVX-512.

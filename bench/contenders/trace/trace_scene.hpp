@@ -37,6 +37,7 @@ struct SceneTraceOptions {
   PixelOrder order = PixelOrder::rows;
   std::uint32_t samples = 1;               // of a pixel
   std::vector<std::size_t> batches = {0};  // rays of our calls; 0: all at once
+  std::vector<std::size_t> streams = {};   // rays of Embree's streams; empty: of `batches`
   double seconds = 3;                      // to time each ray set on each instruction set
   bool skips = false;                      // rays leave out the triangle that they begin on; see RaySet::left
   bool warm = false;                       // each contender traces the rays once more before its clock starts

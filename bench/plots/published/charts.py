@@ -1,6 +1,6 @@
 """The charts of README.md and docs/, made from the measured files of bench/results. Needs matplotlib."""
 import plot_style
-from results import KINDS, TWO_PATHS, speeds_by_batch
+from results import KINDS, TWO_PATHS, newest_of_path, speeds_by_batch
 from roots import (ROOT_LENGTHS, ROOT_SHARES, ROOT_WAYS, SHORT_LENGTHS, SHORT_WAYS, root_gains, root_times,
                    short_times)
 
@@ -207,12 +207,14 @@ def sizes_chart(results):
 
 
 def batches_chart(results):
-    """Speed of calls against the number of their rays: ours, our loop of single rays, Embree's modes."""
+    """Speed of calls against the number of their rays: ours, our loop of single rays, Embree's modes. Each ISA path is
+    of the newest file that has it."""
     figure, panels = plot_style.plt.subplots(2, 3, figsize=(8.4, 5.4), layout='constrained', sharex=True, sharey='col')
-    scene, shown = results.names('scene')[0], []
+    scene, folder, shown = results.names('scene')[0], results.folder, []
     lines = {'raylanes': 'automatic', 'raylanes, a loop of calls': 'call', 'Embree, single rays': 'single',
-             'packets of 8': 'packet8', 'packets of 16': 'packet16', 'streams': 'stream'}
+             'packets of 8': 'packet8', 'packets of 16': 'packet16', 'streams of these': 'packet_stream'}
     for row_of_panels, path in zip(panels, TWO_PATHS):
+        results = newest_of_path(folder, 'batches', path)
         for axes, rays in zip(row_of_panels, ('primary', 'shadow', 'diffuse')):
             for (colour, marker), (label, mode) in zip(plot_style.SERIES, lines.items()):
                 sizes, speeds = speeds_by_batch(results, scene, rays, path, mode)
@@ -223,7 +225,7 @@ def batches_chart(results):
             axes.set_yscale('log')
             axes.set_yticks([1, 2, 5, 10, 20, 50], ['1', '2', '5', '10', '20', '50'])
             axes.yaxis.set_minor_formatter(lambda y, _: '')
-            axes.set_title(f'{KINDS[rays]}, {path}', fontsize=9, loc='left')
+            axes.set_title(f'{KINDS[rays]}, {path}, {results.name}', fontsize=9, loc='left')
         row_of_panels[0].set_ylabel('million rays a second')
     for axes in panels[-1]:
         axes.set_xlabel('rays in a call')

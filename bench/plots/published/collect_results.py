@@ -3,8 +3,8 @@
 
 usage: collect KIND NAME PROCESSOR COMMAND FILE.json…   writes bench/results/NAME-KIND.json
 
-NAME begins with the machine's: MACHINES of results.py. The kinds cliffs, lengths and short have two files: of
-`raylanes isa --json`, for the machine, and of raylanes_bench with repetitions.
+NAME begins with the machine's: MACHINES of results.py. The first file of cliffs, lengths, short and embree_calls is of
+`raylanes isa --json`, for the machine; the others are of raylanes_bench with repetitions and of compare_libraries.
 """
 import json
 import pathlib
@@ -32,6 +32,8 @@ KEYS = {
               'spread', 'ratio', 'ratio_to', 'ratio_to_tree'),
     'batches': ('scene', 'triangles', 'rays', 'ray_count', 'contender', 'path', 'mode', 'batch', 'build',
                 'mrays_per_second', 'spread', 'ratio', 'ratio_to', 'ratio_to_calls', 'ratio_to_robust'),
+    'embree_calls': ('scene', 'rays', 'call', 'mode', 'path', 'count', 'seconds', 'embree_seconds', 'ratio', 'spread',
+                     'rounds'),
     'filters': ('scene', 'triangles', 'query', 'rays', 'ray_count', 'contender', 'path', 'mrays_per_second'),
     'cliffs': ('name', 'nanoseconds'),
     'trees': ('scene', 'triangles', 'contender', 'build', 'build_seconds', 'spread', 'sah_cost', 'bytes', 'peak_bytes',
@@ -72,6 +74,8 @@ def rows_of(content):
 def is_shown(kind, row):
     if kind in ('cliffs', 'lengths', 'short'):
         return 'nanoseconds' in row
+    if kind == 'embree_calls':
+        return 'call' in row
     if kind == 'other_roots':
         return row['function'] != 'sqrt'
     if kind == 'kernels':
@@ -80,7 +84,7 @@ def is_shown(kind, row):
         return row['contender'].startswith('scene')
     if kind == 'batches':
         is_rival = row['build'] != 'robust' and not re.search('^call|_packed$', row['mode'])
-        return row['contender'] == 'raylanes' or is_rival
+        return (row['contender'] == 'raylanes' or is_rival) and row['batch'] <= row['ray_count']
     return kind not in ('rays', 'calls', 'exact', 'sizes', 'modes', 'skips') or row['contender'] == 'raylanes'
 
 

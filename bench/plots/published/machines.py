@@ -96,8 +96,14 @@ LINES = [
     ("builds by `binned_sah`, × Embree's medium", 'trees', builds)]
 
 
+def machines_of_lines(folder):
+    """The machines that have one of these figures."""
+    return [machine for machine in machines_of(folder)
+            if any(machine in machines_of(folder, kind) for _, kind, _ in LINES)]
+
+
 def machines_table(folder):
-    machines = machines_of(folder)
+    machines = machines_of_lines(folder)
 
     def cell(kind, machine, value):
         return value(Results(folder, kind, machine)) if machine in machines_of(folder, kind) else 'not measured'

@@ -57,10 +57,14 @@ COMMANDS = {
                for case in (each(SCENE=['teapot', 'bunny'], K=[0]) + each(SCENE=['dragon'], K=[0, 2, 3]) +
                             each(SCENE=['sponza', 'armadillo', 'staircase'], K=[0]))
                for size in each(SIZE=['64x64', '256x256', '1024x1024'])]),
-    'batches': ('raylanes trace SCENE --size 512x512 --order tiles --mode automatic,call --batch '
-                '1,2,4,8,16,32,64,128,256,512,1024,4096,16384,65536,262144 --rays primary,shadow,diffuse --path '
-                'avx512,avx2 --against embree --seconds 1',
-                each(SCENE=['sibenik', 'kitchen'])),
+    'batches': ('raylanes trace SCENE --size SIZE --order tiles --mode automatic,call --batch '
+                '1,2,4,8,16,32,64,128,256,512,1024,4096,16384,65536,262144,1048576 --streams 8,64,1024 --rays '
+                'primary,shadow,diffuse --path avx512,avx2 --against embree --seconds 1',
+                each(SCENE=['sibenik'], SIZE=['1024x1024']) + each(SCENE=['kitchen'], SIZE=['512x512'])),
+    'embree_calls': ('compare_libraries SCENE WHAT --parts PARTS --path avx512,avx2 --rounds 5',
+                     each(SCENE=['sponza', 'dragon'], WHAT=['calls'], PARTS=[1]) +
+                     each(SCENE=['kitchen'], WHAT=['calls'], PARTS=[500]) +
+                     each(SCENE=['dragon'], WHAT=['others'], PARTS=[1])),
     'calls': ('raylanes trace SCENE --mode call --against embree --rays primary,shadow,diffuse --path avx512,avx2 '
               '--size 256x256 --seconds 1',
               each(SCENE=['bunny', 'dragon', 'sibenik', 'sponza', 'classroom', *SIX[3:]])),
@@ -104,11 +108,19 @@ def processor():
     maker = field('model name').split('@')[0].strip()
     if family == '26':
         return 'zen5', f'{maker} (Zen 5 class, {cores} virtual cores)'
+    if family == '25' and model < 0x10:
+        return 'zen3', f'{maker} (Zen 3 class, {cores} virtual cores)'
     if family == '25' and (0x10 <= model < 0x20 or 0x60 <= model < 0xb0):
         return 'zen4', f'{maker} (Zen 4 class, {cores} virtual cores)'
     if 'Xeon' in maker and ' avx512_fp16' in text:
         return 'xeon', f'Intel Xeon (Sapphire Rapids class, {cores} virtual cores)'
     return None, f'{maker} ({cores} virtual cores)'
+
+
+def on_this_processor(command):
+    """The command without AVX-512 where there is none."""
+    has_avx512 = ' avx512f' in pathlib.Path('/proc/cpuinfo').read_text(encoding='utf-8')
+    return command if has_avx512 else re.sub('avx512,|,avx512', '', command)
 
 
 def mesh_files(folder):
@@ -120,14 +132,16 @@ def mesh_files(folder):
 
 def runs_of(kind, build, meshes, work):
     """(arguments, JSON file) of each run of a kind; before runs of raylanes_bench comes the machine's."""
-    command, cases = COMMANDS[kind]
+    command, cases = on_this_processor(COMMANDS[kind][0]), COMMANDS[kind][1]
     tool = build / 'bench/raylanes'
-    if command.startswith('raylanes_bench'):
+    if not command.startswith('raylanes '):
         yield [tool, 'isa', '--json', work / 'isa.json'], work / 'isa.json'
     for number, case in enumerate(cases):
         words = [case.get(word, word) for word in shlex.split(command)]
         program, file = build / 'bench' / words[0], work / f'{kind}-{number}.json'
         arguments = [meshes.get(word, word) if word == case.get('SCENE') else word for word in words[1:]]
+        if words[0] == 'compare_libraries':
+            program, arguments = ROOT / 'bench/programs' / words[0], [build, *arguments]
         out = [f'--benchmark_out={file}'] if words[0] == 'raylanes_bench' else ['--json', file]
         yield [program, *arguments, *out], file
 
@@ -148,7 +162,7 @@ def measure(kind, options, meshes, work):
     machine, results = options.machine or name, ROOT / 'bench/results'
     older = list(results.glob(f'{machine}-*-{kind}.json'))
     target = f'{machine}-{compiler(options.build)}-{time.strftime("%Y-%m-%d")}'
-    collect_results.main(kind, target, shown, COMMANDS[kind][0], *(file for _, file in runs))
+    collect_results.main(kind, target, shown, on_this_processor(COMMANDS[kind][0]), *(file for _, file in runs))
     for file in older:
         if file.name != f'{target}-{kind}.json':
             file.unlink()

@@ -9,7 +9,7 @@ mean = statistics.geometric_mean
 
 
 # The machines by the first word of their files, and their names in pages.
-MACHINES = {'xeon': 'Xeon', 'zen4': 'Zen 4', 'zen5': 'Zen 5'}
+MACHINES = {'xeon': 'Xeon', 'zen3': 'Zen 3', 'zen4': 'Zen 4', 'zen5': 'Zen 5'}
 
 
 def machines_of(folder, kind='*'):
@@ -22,13 +22,24 @@ def newest(folder, kind):
     return max(machines_of(folder, kind), key=lambda machine: Results(folder, kind, machine).machine['date'])
 
 
+def newest_of_path(folder, kind, path):
+    """The newest file of this kind that has rows of an ISA path."""
+    files = [Results(folder, kind, machine) for machine in machines_of(folder, kind)]
+    return max((file for file in files if file.where(path=path)), key=lambda file: file.machine['date'])
+
+
 class Results:
     """One measured file: its machine, its command, its rows."""
 
     def __init__(self, folder, kind, machine):
+        self.folder, self.name = folder, MACHINES[machine]
         file, = pathlib.Path(folder).glob(f'{machine}-*-{kind}.json')
         content = json.loads(file.read_text(encoding='utf-8'))
         self.machine, self.command, self.rows = content['machine'], content['command'], content['rows']
+
+    def paths(self):
+        """Those of the two ISA paths that this machine has."""
+        return [path for path in TWO_PATHS if self.where(path=path)]
 
     def names(self, key):
         return list(dict.fromkeys(row[key] for row in self.rows))
@@ -46,18 +57,16 @@ class Results:
 
 
 def speeds_by_batch(results, scene, rays, path, mode):
-    """(sizes of batches, million rays a second of a mode at each). Modes that take any number of rays in the same way
-    have one speed; Embree's have the best of their trees and hints."""
+    """(sizes of batches, million rays a second of a mode at each). Modes that were measured with fewer rays a call make
+    several calls; Embree's have the best of their trees and hints."""
     sizes = sorted({row['batch'] for row in results.where(mode='automatic')})
     rows = [row for row in results.where(scene=scene, rays=rays) if row['path'].removeprefix('embree-') == path and
             row['mode'].removesuffix('_coherent') == mode]
     speeds = {}
     for row in rows:
         speeds[row['batch']] = max(row['mrays_per_second'], speeds.get(row['batch'], 0))
-    if len(speeds) == 1:
-        (least, speed), = speeds.items()
-        speeds = {size: speed for size in sizes if size >= least}
-    return sorted(speeds), [speeds[size] for size in sorted(speeds)]
+    sizes = [size for size in sizes if speeds and size >= min(speeds)]
+    return sizes, [speeds[max(batch for batch in speeds if batch <= size)] for size in sizes]
 
 
 def table(head, lines):

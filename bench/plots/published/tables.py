@@ -153,17 +153,52 @@ def parts_table(results):
 
 def batches_table(results):
     """Batches by the number of their rays: speed by a loop of calls, and by Embree's best with no more rays a call."""
-    kinds = results.names('rays')
+    kinds, paths = results.names('rays'), results.paths()
 
     def cell(key, path, **case):
         return pair(results.one(path=path, mode='automatic', rays=kind, **case)[key] for kind in kinds)
 
-    return table(['scene, rays in a call', *(f'{path}: × {rival}' for path in TWO_PATHS
+    return table(['scene, rays in a call', *(f'{path}: × {rival}' for path in paths
                                              for rival in ('a loop of calls', 'Embree'))],
-                 [[f'{scene}, {batch:,}', *(cell(key, path, scene=scene, batch=batch) for path in TWO_PATHS
+                 [[f'{scene}, {batch:,}', *(cell(key, path, scene=scene, batch=batch) for path in paths
                                             for key in ('ratio_to_calls', 'ratio'))]
                   for scene in results.names('scene')
-                  for batch in sorted({row['batch'] for row in results.where(mode='automatic')})])
+                  for batch in sorted({row['batch'] for row in results.where(mode='automatic', scene=scene)})])
+
+
+def embree_calls_table(results):
+    """Calls of Embree's interface by raylanes and by Debian's Embree: pictures, then what else scenes have, then
+    commits."""
+    paths, title = results.paths(), ', '.join(results.paths())
+    pictures = dict.fromkeys((row['scene'], row['rays']) for row in results.where(mode='fast'))
+
+    def cell(**case):
+        rows = [results.where(path=path, **case) for path in paths]
+        return pair(row['ratio'] for row, in rows) if all(rows) else '–'
+
+    def line(call, mode):
+        return [f'`{call}`' if mode == 'fast' else '… against robust mode',
+                *(cell(scene=scene, rays=rays, call=call, mode=mode) for scene, rays in pictures)]
+
+    lines = [line(row['call'], mode) for row in results.where(scene=next(iter(pictures))[0], rays='camera', mode='fast',
+                                                              path=paths[0]) for mode in ('fast', 'robust')]
+    others = dict.fromkeys(row['mode'] for row in results.where(rays='random'))
+    commits = dict.fromkeys((row['scene'], row['count'], row['mode']) for row in results.where(call='rtcCommitScene'))
+
+    def milliseconds(case, key):
+        (scene, count, mode), path = case, paths[0]
+        return f"{1e3 * results.where(scene=scene, count=count, mode=mode, path=path)[0][key]:.3g}"
+
+    return [
+        *table([title, *(f'{scene}, {rays}' for scene, rays in pictures)],
+               [line for line in lines if any(cell != '–' for cell in line[1:])]), '',
+        *table(['random rays at the dragon', '`rtcIntersect1`', '`rtcOccluded1`'],
+               [[mode, *(cell(rays='random', mode=mode, call=call) for call in ('rtcIntersect1', 'rtcOccluded1'))]
+                for mode in others]), '',
+        *table(['`rtcCommitScene`', 'raylanes, ms', 'Embree, ms'],
+               [[f"{scene}, {count} {'geometry' if count == 1 else 'geometries'}: {mode}",
+                 *(milliseconds((scene, count, mode), key) for key in ('seconds', 'embree_seconds'))]
+                for scene, count, mode in commits])]
 
 
 def modes_table(results):
@@ -215,3 +250,4 @@ TABLES = {'sizes': ('sizes', sizes_table), 'batches': ('batches', batches_table)
           'roots': ('roots', roots.roots_table), 'lengths': ('lengths', roots.lengths_table),
           'root_methods': ('roots', roots.root_methods_table), 'kernels': ('kernels', kernels_table),
           'points': ('points', points_table), 'trees': ('trees', trees_table)}
+TABLES_OF_EMBREE = {'embree_calls': ('embree_calls', embree_calls_table)}

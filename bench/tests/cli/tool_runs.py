@@ -134,9 +134,13 @@ BESIDE_EMBREE = [
      all_of(row["ratio"] > 0 and row["ratio_to"].endswith(" call") for row in of(rows, contender="raylanes"))),
     ("trace hall --size 32x24 --mode automatic,call --batch 1,8,100 --against embree", None, "", lambda rows:
      values(of(rows, mode="stream", build="medium"), "batch") == {1, 8, 100} and
+     values(of(rows, mode="packet_stream", build="medium"), "batch") == {100} and
+     all_of("coherent" not in row["mode"] for row in of(rows, rays="diffuse")) and
      all_of(row["ratio_to_calls"] > 0 for row in of(rows, mode="automatic")) and
      {row["ratio_to"].split()[-1] for row in of(rows, batch=1, mode="automatic")} <= {
          "single", "stream", "stream_coherent"}),
+    ("trace hall --size 32x24 --mode automatic --batch 1,100 --streams 32 --against embree", None, "", lambda rows:
+     values(of(rows, mode="packet_stream", build="high"), "batch") == {32} == values(of(rows, mode="stream"), "batch")),
     ("trace hall --size 32x24 --mode automatic --against embree", None, "", lambda rows:
      all_of(row["embree_wrong"] == 0 for row in rows if row["mode"].endswith("_packed")) and
      all_of(row["ratio_to_packed"] > 0 and "packed" not in row["ratio_to"] for row in of(rows, contender="raylanes"))),
