@@ -107,7 +107,7 @@ struct QueryKernels {
   TraversalRow ruled_single, ruled_stream;
   RuledCallRow ruled_call;        // null in the counted row
   KeptRow<TreeView, float> kept;  // null in the counted row
-  // The nearest hits after those of batch.after, in the order of t and then of primitives; null: nearest hits.
+  // The nearest hits after the hits in batch.after, in the order of t and then of primitives; null: nearest hits.
   void (*closest_after)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.
   void (*visit)(const TreeView& tree, const VisitBatch& batch);

@@ -183,7 +183,7 @@ class SurfaceQueries : public RayQueries<Tree> {
   /// all triangles but the skipped one, whatever options.facing is; in scenes over the triangles of one
   /// instance, in its space. If all of them have the same corners, all count.
   /// A ray in the plane of a triangle, or from a point on an edge of it, does not pass it. A cell that is only touched
-  /// at a corner has no crossing: particles go through cells that share faces by crossings(), as docs/crossings.md says.
+  /// at a corner has none: particles go through cells that share faces by crossings(), as docs/crossings.md says.
   /// Takes all options of closest(), `after` too. Throws as closest() does, and std::invalid_argument for another test
   /// than TriangleTest::exact, and if a geometry of a scene does not consist of triangles.
   Hit closest_crossing(const Ray& ray, const Options& options = {}) const;

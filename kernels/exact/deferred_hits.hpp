@@ -1,5 +1,5 @@
-// Deferred hits of a test that screens: while a search runs it keeps a candidate, the triangle that is hit nearest with
-// two bounds of its t. The numbers t, u, v of the candidate are computed when the search is over. The caller knows where
+// Deferred hits of a test that screens: while a search runs it keeps a candidate, the triangle hit nearest, with two
+// bounds of its t. The numbers t, u, v of the candidate are computed when the search is over. The caller knows where
 // triangles are: `triangles` has
 //   number(k, leaf_triangle)   number k of a triangle
 //   primitive(leaf_triangle)   its index
@@ -113,7 +113,7 @@ inline bool is_compared_in_doubles([[maybe_unused]] const Triangles& triangles,
   return false;
 }
 
-// A rule admits hits: admitted_hit(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if it is not admitted.
+// A rule admits hits: admitted_hit(hit, triangles, ray, leaf_triangle) returns the hit, or a miss if that is not one.
 
 // A triangle that may be hit, and if so before or behind the best so far, or at the same t. If builders split
 // triangles, it often is the best one again, met in another part: that is no news.

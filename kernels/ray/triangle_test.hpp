@@ -90,8 +90,8 @@ using AxesOfLanes = std::conditional_t<Test::by_major_axis, LaneAxes<V>, StoredA
 template <class Test, class V, class Axes>
 using PreparedRayOf = decltype(Test::prepare(Vec3<V>(), Vec3<V>(), std::declval<Axes>()));
 
-// Whether a test screens, as the filters of Shewchuk 1997 do: it decides first, with certainty or not, lane by lane, and the numbers of
-// a hit are computed later.
+// Whether a test screens, as the filters of Shewchuk 1997: it decides first, with certainty or not, lane by lane, and
+// the numbers of a hit are computed later.
 template <class Test>
 inline constexpr bool screens = requires {
   Test::screens;
@@ -103,7 +103,7 @@ inline constexpr bool may_take_planes = requires {
   requires Test::may_take_planes;
 };
 
-// The verdict of a screen: the lanes with certain hits, and the lanes that floats leave undecided, as bits or as a mask.
+// The verdict of a screen: the lanes with certain hits, and those that floats leave undecided, as bits or as a mask.
 // t_lo ≤ t ≤ t_hi for a certain hit.
 template <class V, class LaneSet = std::uint32_t>
 struct Verdict {

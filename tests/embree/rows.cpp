@@ -22,7 +22,12 @@ std::string text_of(const RTCRayHit& r) {
   return text;
 }
 
-// A ray through packets of `lanes`, as each of their active rays.
+bool has_packets_of_16() {
+  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+}
+
+// A ray through packets of `lanes`, as each of their active rays. Debian's library writes to inactive lanes of 16, too,
+// on processors without AVX-512, where it has no packets of 16 of its own.
 template <int lanes, class Call>
 bool is_same_in_packet(const RTCRayHit& before, const RTCRayHit& after, Call&& call) {
   alignas(64) RTCRayHitNt<lanes> packet;
@@ -39,6 +44,7 @@ bool is_same_in_packet(const RTCRayHit& before, const RTCRayHit& after, Call&& c
     for (int k = 0; k < 20; ++k) words[k] = at[k * lanes + i];
     RTCRayHit one;
     std::memcpy(static_cast<void*>(&one), words, sizeof words);
+    if (valid[i] == 0 && lanes == 16 && !has_packets_of_16()) continue;
     if (text_of(one) != text_of(valid[i] == 0 ? before : after)) return false;
   }
   return true;
@@ -75,16 +81,23 @@ void show(const char* name, RTCScene scene, const RTCRayHit& ray) {
 
 namespace {
 
+// As a library rounds it. Debian's compares in fast scenes before it divides, and rounds on each processor otherwise.
+float t_of(RTCScene scene, RTCRayHit ray) {
+  rtcIntersect1(scene, &context, &ray);
+  return ray.ray.tfar;
+}
+
 void rays_of_a_triangle() {
   for (const int flags : {0, static_cast<int>(RTC_SCENE_FLAG_ROBUST)}) {
     RTCScene s = scene_of({triangles_of(unit_triangle)}, flags);
     std::printf("%s\n", flags == 0 ? "fast" : "robust");
     show("plain", s, ray_of(over, down));
     show("from the triangle", s, ray_of({.25f, .25f, 0}, down));
-    show("tnear is t", s, ray_of(over, down, 1));
-    show("tfar is t", s, ray_of(over, down, 0, 1));
-    show("tnear below t", s, ray_of(over, down, std::nextafter(1.0f, 0.0f)));
-    show("tfar below t", s, ray_of(over, down, 0, std::nextafter(1.0f, 0.0f)));
+    const float t = flags == 0 ? 1 : t_of(s, ray_of(over, down)), below = std::nextafter(t, 0.0f);
+    show("tnear is t", s, ray_of(over, down, t));
+    show("tfar is t", s, ray_of(over, down, 0, t));
+    show("tnear below t", s, ray_of(over, down, below));
+    show("tfar below t", s, ray_of(over, down, 0, below));
     show("tfar minus infinity", s, ray_of(over, down, 0, -inf));
     show("tfar below tnear", s, ray_of(over, down, 3, 2));
     show("on an edge", s, ray_of({.5f, 0, 1}, down));
