@@ -53,6 +53,7 @@ struct FusedRay {
   static constexpr float pad = 0x1p-21f, min_pad = 0x1p-90f, min_component = 0x1p-60f;
   // Below this size min_pad would widen boxes by more than pad does: by all of the tree in the end.
   static constexpr float min_size = 0x1p-69f, min_direction = 0x1p-30f, max_direction = 0x1p30f;
+  static constexpr float max_more = 0x1p60f;
 
   NodeFloats minus_near[3], minus_far[3], tmin;
   alignas(16) float inverse[4];
@@ -61,7 +62,7 @@ struct FusedRay {
   std::size_t major;     // the axis of the largest one, the first of equals
 
   // Whether the ray is valid, and nothing overflows with it. Another one goes the way of PaddedSlabs. `more` is what a
-  // tree asks for besides.
+  // tree asks for besides: infinite for instances that are flat to rounding.
   template <class Test>
   bool prepare(const TreeView& tree, const Ray& ray, float more = 0.0f) {
     // tmin is behind the origin, tmax behind the direction, hi behind lo.
@@ -78,7 +79,7 @@ struct FusedRay {
         (blend<8>(size, o) <= blend<8>(Floats<4>(tree.max_fused_size), d)) &
         (components <= blend<8>(Floats<4>(max_direction), o)) &
         (blend<8>(largest_size, greatest) >= four_floats(min_size, min_size, min_size, min_direction));
-    if (!all(is_usual)) [[unlikely]]
+    if (!all(is_usual) || !(more <= max_more)) [[unlikely]]
       return false;
     major = static_cast<std::size_t>(std::countr_zero(bits(components == greatest)));
     Floats<4> padding = fused(largest_size, Floats<4>(pad), Floats<4>(min_pad + more));

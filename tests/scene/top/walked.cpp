@@ -77,6 +77,20 @@ TEST(Walked, takes_rays_of_any_numbers) {
   expect_all(parts, rays, ~0u, rays.size() / 20);
 }
 
+// Padding by a share of the origin overflows.
+TEST(Walked, enters_instances_that_are_nearly_flat) {
+  Random random(404);
+  TriangleParts parts;
+  parts.add(ellipsoid(2, {0, 0, 0}, {1, 1.5f, 1}));
+  for (const Transform& transform :
+       {Transform{},
+        {{{0x1p-149f, 0, 0, 0}, {0, 1, 0, 0}, {-0x1p55f, 0, 1, 0}}},
+        {{{0x1p26f, 0, -0x1p-30f, 0}, {-14, 1, 0x1p-149f, 0}, {0, 0x1p-100f, 1, 0}}}})
+    parts.scene.place(0, transform);
+  parts.scene.update();
+  expect_all(parts, rays_to_instances(parts.scene, by_level(300), 6, random));
+}
+
 TEST(Walked, sees_changes_and_outlives_what_was_copied) {
   Random random(403);
   TriangleParts parts = mixed_parts(random);
