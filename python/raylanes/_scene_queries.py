@@ -1,19 +1,16 @@
-"""Queries of scenes: rays, and places of instances."""
+"""Queries of scenes."""
 
-import numpy as np
-
-from ._arrays import SCENES, given_rays, unsigned
+from ._arrays import SCENES, given_rays
 from ._scalars import count
 from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
                       skipped_in_scene)
 from .scene_hits import SceneCrossings, SceneHits, SceneStretches
 
 EVERY_BIT = 0xFFFFFFFF
-_instance_dtype = np.dtype([("geometry", "<u4"), ("mask", "<u4"), ("transform", "<f4", (3, 4))])
 
 
 class SceneQueries:
-    """Queries of rays and of instances over the native scene `self._tree`."""
+    """Queries of rays over the native scene `self._tree`."""
 
     def closest(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
                 out=None, active=None, after=None, test="exact", grade="reproducible", mode="automatic", hint="none",
@@ -338,72 +335,6 @@ class SceneQueries:
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return counted(self._tree.count_crossings, SCENES, rays, out, facing, active, threads, progress,
                        skipped_in_scene(skip), _mask(mask))
-
-    def geometry_of(self, instance):
-        """Return the geometry of an instance, or of each of many.
-
-        Parameters
-        ----------
-        instance : int or array of int, shape (...)
-            The instances. IndexError is raised if one does not exist.
-
-        Returns
-        -------
-        uint32, or ndarray of uint32, shape (...)
-            The index of the geometry.
-
-        Examples
-        --------
-        >>> int(scene.geometry_of(0))
-        0
-        """
-        return self._instances(instance)["geometry"][()]
-
-    def mask_of(self, instance):
-        """Return the mask of an instance, or of each of many.
-
-        Parameters
-        ----------
-        instance : int or array of int, shape (...)
-            The instances. IndexError is raised if one does not exist.
-
-        Returns
-        -------
-        uint32, or ndarray of uint32, shape (...)
-            The mask.
-
-        Examples
-        --------
-        >>> hex(scene.mask_of(0))
-        '0xffffffff'
-        """
-        return self._instances(instance)["mask"][()]
-
-    def transform_of(self, instance):
-        """Return the transform of an instance, or of each of many.
-
-        Parameters
-        ----------
-        instance : int or array of int, shape (...)
-            The instances. IndexError is raised if one does not exist.
-
-        Returns
-        -------
-        ndarray of float32, shape (..., 3, 4)
-            The transform, as in place().
-
-        Examples
-        --------
-        >>> scene.transform_of(0)[0]
-        array([1., 0., 0., 0.], dtype=float32)
-        """
-        return self._instances(instance)["transform"]
-
-    def _instances(self, instance):
-        instances = unsigned("instance", instance)
-        records = np.zeros(instances.shape, _instance_dtype)
-        self._tree.instances(np.ascontiguousarray(instances).reshape(-1), records.reshape(-1))
-        return records
 
 
 def _mask(mask):

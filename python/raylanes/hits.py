@@ -26,6 +26,29 @@ class Records(np.ndarray):
             return item
         return self.view(np.dtype((self._record, self.dtype)))[key]
 
+    def columns(self):
+        """Return the records as columns: pandas.DataFrame(hits.columns()) is a table with a row for each.
+
+        Returns
+        -------
+        dict of ndarray, shape (n,)
+            A contiguous array for each field, in the order of records. Coordinates of points have columns of their
+            own: point_x, point_y, point_z.
+
+        Examples
+        --------
+        >>> tree = raylanes.Bvh([[0, 0, 0], [4, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+        >>> tree.closest(raylanes.rays([[1, 0.5, 5]], [0, 0, -1])).columns()["t"]
+        array([5.])
+        """
+        columns = {}
+        for name in self.dtype.names:
+            field = np.asarray(self[name])
+            axes = {name: field} if field.ndim == self.ndim else {
+                f"{name}_{axis}": field[..., k] for k, axis in enumerate("xyz")}
+            columns.update((key, np.array(column).reshape(-1)) for key, column in axes.items())
+        return columns
+
 
 class _OnTriangle:
     """Records with a place in a triangle: u and v say where."""
@@ -286,6 +309,22 @@ class Lists:
     def ray(self):
         """ndarray of int64, shape (h,): the ray of each item."""
         return np.repeat(np.arange(len(self)), self.counts)
+
+    def columns(self):
+        """Return the items as columns, with the ray of each: pandas.DataFrame(lists.columns()) is a table of them.
+
+        Returns
+        -------
+        dict of ndarray, shape (h,)
+            "ray", and the columns of the items.
+
+        Examples
+        --------
+        >>> tree = raylanes.Bvh([[0, 0, 0], [4, 0, 0], [0, 2, 0]], [[0, 1, 2]])
+        >>> list(tree.crossings(raylanes.rays([[1, 0.5, 5]], [0, 0, -1])).columns())
+        ['ray', 't', 'primitive', 'side']
+        """
+        return {"ray": self.ray, **self.items.columns()}
 
     def positions(self, rays=None, *, origins=None, directions=None):
         """Compute origin + t * direction of each hit or crossing.

@@ -5,6 +5,7 @@ import numpy as np
 from . import _native
 from ._arrays import count_of, faces_of, numbers, require_kept, unsigned, vertices_of
 from ._meshes import is_mesh, parts_of
+from ._places import Places
 from ._scalars import count, flag, threads_of
 from ._scene_queries import EVERY_BIT, SceneQueries
 from ._stored import Stored
@@ -12,7 +13,7 @@ from .sphere_tree import SphereTree
 from .tree import Bvh
 
 
-class Scene(SceneQueries, Stored):
+class Scene(SceneQueries, Places, Stored):
     """Geometries, and instances that place them: trees of triangles and of spheres, each in any number of places.
 
     Geometries and instances are numbered from 0, in the order in which they are added. Call update() after any change
@@ -33,6 +34,9 @@ class Scene(SceneQueries, Stored):
     and refit() of a scene changes no tree. Copies of a scene share their geometries; the first change of a copy copies
     its instances. Many threads may query one scene at the same time, also while others change it: a query keeps the
     scene that it began with, and each change is seen whole or not at all. Changes release the GIL if they take long.
+
+    Instances may have names, which place() gives, name_of() finds and instances_named() looks for. Copies and pickles
+    keep them; files do not.
 
     Scenes are copied and pickled with their attributes, like any object. A scene that is loaded or unpickled is ready,
     as after update().
@@ -92,19 +96,23 @@ class Scene(SceneQueries, Stored):
         >>> scene.add([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
         1
         """
-        if faces is None and (isinstance(tree, (Bvh, SphereTree)) or not is_mesh(tree)):
+        if not _is_mesh(tree, faces):
             return self._tree.add(_part_of(tree))
         return self._tree.add_mesh(*_mesh_of_floats(tree, faces), threads_of(threads))
 
-    def replace(self, geometry, tree):
-        """Replace a geometry by another tree; its instances stay where they are. update() must follow.
+    def replace(self, geometry, tree, faces=None, *, threads=0):
+        """Replace a geometry by another tree, or a mesh; its instances stay where they are. update() must follow.
 
         Parameters
         ----------
         geometry : int
             The index of the geometry.
-        tree : Bvh of float32, or SphereTree
-            The tree, as in add().
+        tree : Bvh of float32, SphereTree, array of float of shape (n, 3), or a mesh
+            The tree, or the vertices of a mesh, whose tree is built at once; as in add().
+        faces : array of int, shape (m, 3), optional
+            The triangles of a mesh.
+        threads : int, default 0
+            At most so many threads to build the tree of a mesh; 0: all cores.
 
         Returns
         -------
@@ -115,7 +123,10 @@ class Scene(SceneQueries, Stored):
         IndexError
             If there is no such geometry.
         """
-        self._tree.replace(_index("geometry", geometry), _part_of(tree))
+        geometry = _index("geometry", geometry)
+        if _is_mesh(tree, faces):
+            tree = Bvh(*_mesh_of_floats(tree, faces), threads=threads)
+        self._tree.replace(geometry, _part_of(tree))
 
     def refit(self, geometry, vertices, faces=None, *, threads=0):
         """Refit a geometry of triangles to a moved mesh, as Bvh.refit() does. update() must follow.
@@ -147,7 +158,7 @@ class Scene(SceneQueries, Stored):
         """
         self._tree.refit(_index("geometry", geometry), *_mesh_of_floats(vertices, faces), threads_of(threads))
 
-    def place(self, geometry, transform=None, *, mask=EVERY_BIT):
+    def place(self, geometry, transform=None, *, mask=EVERY_BIT, name=None):
         """Place a geometry once or many times. update() must follow.
 
         Parameters
@@ -159,6 +170,8 @@ class Scene(SceneQueries, Stored):
             The fourth row, if there is one, must be 0, 0, 0, 1. Numbers are rounded to float32. Default: the identity.
         mask : int or array of int, default 2^32 - 1
             Bits of the instance, or of each instance; an instance with mask 0 is never hit.
+        name : str or array of str, optional
+            The name of the instance, or of each instance: name_of(hits.instance) returns the names of what is hit.
 
         Returns
         -------
@@ -176,9 +189,11 @@ class Scene(SceneQueries, Stored):
         1
         """
         rows, shape = _transforms(np.eye(4)[:3] if transform is None else transform)
-        masks = unsigned("mask", mask)
-        whole = _common(shape, masks.shape)
+        masks, names = unsigned("mask", mask), _texts("name", "" if name is None else name)
+        whole = _common(_common(shape, masks.shape), names.shape)
         first = self._tree.place(_index("geometry", geometry), _spread(rows, shape, whole), _flat(masks, whole))
+        if name is not None or self._names:
+            self._give_names(first, _flat(names, whole).tolist())
         return first if whole == () else first + np.arange(count_of(whole)).reshape(whole)
 
     def move(self, instance, transform):
@@ -329,6 +344,10 @@ class Scene(SceneQueries, Stored):
                 f"instances, {self.nbytes} bytes without geometries>")
 
 
+def _is_mesh(tree, faces):
+    return faces is not None or (not isinstance(tree, (Bvh, SphereTree)) and is_mesh(tree))
+
+
 def _mesh_of_floats(vertices, faces):
     """The vertices, of float32, and the faces of a mesh."""
     vertices, faces = parts_of(vertices, faces)
@@ -346,6 +365,13 @@ def _part_of(tree):
     if isinstance(tree._tree, _native.BvhD):
         raise ValueError("tree: a scene has float32, this Bvh has float64; give it a Bvh made with dtype=numpy.float32")
     return tree._tree
+
+
+def _texts(name, values):
+    array = np.asarray(values)
+    if array.dtype.kind != "U" and array.shape != (0,):
+        raise TypeError(f"{name}: strings are needed, not {array.dtype}")
+    return array
 
 
 def _index(name, value):

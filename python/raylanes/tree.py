@@ -10,7 +10,7 @@ from ._meshes import parts_of
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
 from ._scalars import flag, function, real, threads_of, word
-from ._stored_tree import StoredTree
+from ._stored import StoredTree
 from ._warn import warn
 
 

@@ -40,6 +40,8 @@ print(places, hits.instance.dtype, hits.normals(scene, {0: spheres}, []).shape, 
 print(scene.occluded([], filter=lambda indices, hits: hits.instance == indices), spheres.closest([], after=[]).t)
 print(tree.closest([], filter=lambda indices, hits: hits.primitive == indices).t, spheres.occluded_from([], []))
 print(hits.interpolate([[1.0]], [[[0, 0, 0]]]).shape, spheres.report()["left_out"], raylanes.Scene.load("file").bounds)
+print(scene.name_of(hits.instance), scene.instances_named("a").dtype, scene.place(0, name="a"))
+print(hits.columns()["t"].shape, tree.all_hits([]).columns()["ray"].dtype)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
 bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "dtype",
@@ -50,7 +52,7 @@ bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "d
        "raylanes.Bvh([], []).report()['wide_nodes']": "wide_nodes",
        "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",
        "raylanes.Scene().add(raylanes.KdTree([], []))": "KdTree",
-       "raylanes.SphereTree([], [], builder='auto')": "builder",
+       "raylanes.SphereTree([], [], builder='auto')": "builder", "raylanes.Scene().instances_named(0)": "int",
        "raylanes.Scene().closest([]).normals([], [])": "normals",
        "raylanes.trimesh.RayMeshIntersector(None).intersects_any([], [], multiple_hit=1)": "multiple_hit"}
 
