@@ -25,16 +25,18 @@ raylanes_status failed(raylanes_status status, const char* message) noexcept {
 raylanes_status status_of_exception() noexcept {
   try {
     throw;
-  } catch (const std::invalid_argument& error) {
-    return failed(RAYLANES_INVALID_ARGUMENT, error.what());
   } catch (const std::bad_alloc&) {
     return failed(RAYLANES_OUT_OF_MEMORY, "there is not enough memory");
   } catch (const std::length_error& error) {
     return failed(RAYLANES_TOO_LARGE, error.what());
+  } catch (const std::logic_error& error) {  // no such part, or a scene without update()
+    return failed(RAYLANES_INVALID_ARGUMENT, error.what());
   } catch (const SmallBuffer& buffer) {
-    std::snprintf(last_message, sizeof last_message, "the buffer has %zu bytes, the tree takes %zu",
+    std::snprintf(last_message, sizeof last_message, "the buffer has %zu bytes, %zu are needed",
                   buffer.capacity, buffer.size);
     return RAYLANES_SMALL_BUFFER;
+  } catch (const Cancelled&) {
+    return failed(RAYLANES_CANCELLED, "a function of the caller ended the call");
   } catch (const std::system_error& error) {  // also a std::runtime_error
     return failed(RAYLANES_FAILED, error.what());
   } catch (const std::runtime_error& error) {

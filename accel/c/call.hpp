@@ -35,6 +35,8 @@ raylanes_status status_of(const Call& call) noexcept {
 struct SmallBuffer {
   std::size_t capacity, size;
 };
+// A function of the caller that ended a call.
+struct Cancelled {};
 
 // Throws std::invalid_argument if a pointer is null.
 void require_pointer(const char* what, const void* pointer);

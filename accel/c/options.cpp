@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <raylanes/doubles.hpp>
+#include <raylanes/scene.hpp>
 
 namespace raylanes::c {
 
@@ -11,7 +12,11 @@ raylanes_build_options build_defaults() {
           .threads = options.threads,
           .optimize = options.optimize,
           .choose = options.choose,
-          .rays = options.rays};
+          .rays = options.rays,
+          .progress = nullptr,
+          .progress_context = nullptr,
+          .max_in_leaf = BoundedBuildOptions().max_in_leaf,
+          .slack = BoundedBuildOptions().slack};
 }
 
 raylanes_ray_options ray_defaults() {
@@ -25,7 +30,13 @@ raylanes_ray_options ray_defaults() {
           .skip_stride = 0,
           .max_count = std::numeric_limits<std::size_t>::max(),
           .after = nullptr,
-          .after_stride = 0};
+          .after_stride = 0,
+          .mask = options.mask,
+          .skip_to_instance = to_instance_of_hits,
+          .filter = nullptr,
+          .filter_context = nullptr,
+          .progress = nullptr,
+          .progress_context = nullptr};
 }
 
 raylanes_point_options point_defaults() {
@@ -36,7 +47,9 @@ raylanes_point_options point_defaults() {
           .path = nullptr,
           .active = nullptr,
           .max_distance = options.max_distance,
-          .accuracy = WindingOptions().accuracy};
+          .accuracy = WindingOptions().accuracy,
+          .progress = nullptr,
+          .progress_context = nullptr};
 }
 
 void require_options_size(std::size_t size, std::size_t known) {
@@ -44,6 +57,17 @@ void require_options_size(std::size_t size, std::size_t known) {
   if (size < sizeof size || size > known || size % 8 != 0)
     throw std::invalid_argument("options: a size of " + std::to_string(size) +
                                 " bytes; allowed are multiples of 8 up to " + std::to_string(known));
+}
+
+Progress progress_of(raylanes_progress function, void* context) {
+  if (function == nullptr) return {};
+  return [=](double share) {
+    if (function(context, share) != 0) throw Cancelled();
+  };
+}
+
+void refuse_filter(const raylanes_ray_options& c) {
+  if (c.filter != nullptr) throw std::invalid_argument("options: this call takes no filter");
 }
 
 BuildOptions build_options(const raylanes_build_options* given) {
@@ -54,7 +78,15 @@ BuildOptions build_options(const raylanes_build_options* given) {
   options.optimize = c.optimize != 0;
   options.choose = c.choose != 0;
   options.rays = c.rays;
+  options.progress = progress_of(c.progress, c.progress_context);
   return options;
+}
+
+BoundedBuildOptions bounded_build_options(const raylanes_build_options* given) {
+  const raylanes_build_options c = completed(given, build_defaults());
+  const BuildOptions options = build_options(&c);
+  return {
+      .builder = options.builder, .threads = options.threads, .max_in_leaf = c.max_in_leaf, .slack = c.slack};
 }
 
 namespace {

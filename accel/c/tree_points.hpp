@@ -1,12 +1,21 @@
-// The functions of one kind of tree for points and triangles: behind tree_calls.hpp, by its macros.
+// The functions of one kind of tree for points and triangles: behind object_calls.hpp and tree_calls.hpp, by their
+// macros.
 namespace raylanes::c::RAYLANES_NUMBERS {
+namespace {
+
+using CornersOfTriangle = RAYLANES_OPTIONS(Triangle);
+static_assert(sizeof(CornersOfTriangle) == 9 * sizeof(Number));
+
+}  // namespace
+
 extern "C" {
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_corners,
-                              raylanes_bvhd_corners)(const RAYLANES_HANDLE* tree, const void* primitives,
-                                                     std::size_t n, std::size_t stride, Number* corners) {
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_corners,
+                                   raylanes_bvhd_corners)(const RAYLANES_HANDLE* tree, const void* primitives,
+                                                          std::size_t n, std::size_t stride,
+                                                          Number* corners) {
   return status_of([&] {
-    const Tree& asked = tree_of(tree);
+    const Tree& asked = object_of(tree);
     const std::size_t apart = checked_stride("primitives", primitives, n, stride, sizeof(std::uint32_t));
     checked_stride("corners", corners, n, 0, sizeof(CornersOfTriangle));
     require_alignment("corners", corners, alignof(CornersOfTriangle));
@@ -14,61 +23,49 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_corners,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_bounds, raylanes_bvhd_bounds)(const RAYLANES_HANDLE* tree,
-                                                                         Number* lo, Number* hi) {
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_locate,
+                                   raylanes_bvhd_locate)(const RAYLANES_HANDLE* tree, const void* points,
+                                                         std::size_t n, std::size_t stride,
+                                                         std::uint8_t* locations,
+                                                         const raylanes_point_options* options) {
   return status_of([&] {
-    const auto box = tree_of(tree).bounds();
-    require_pointer("lo", lo);
-    require_pointer("hi", hi);
-    std::copy(box.lo.begin(), box.lo.end(), lo);
-    std::copy(box.hi.begin(), box.hi.end(), hi);
+    object_of(tree).locate(vertices_of("points", points, n, stride),
+                           span_of<Location>("locations", locations, n),
+                           *PointOptions<LocateOptions>(options));
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_locate,
-                              raylanes_bvhd_locate)(const RAYLANES_HANDLE* tree, const void* points,
-                                                    std::size_t n, std::size_t stride,
-                                                    std::uint8_t* locations,
-                                                    const raylanes_point_options* options) {
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_closest_points, raylanes_bvhd_closest_points)(
+    const RAYLANES_HANDLE* tree, const void* points, std::size_t n, std::size_t stride,
+    RAYLANES_RECORD(closest_point) * closest, const raylanes_point_options* options) {
   return status_of([&] {
-    tree_of(tree).locate(vertices_of("points", points, n, stride),
-                         span_of<Location>("locations", locations, n), point_options<LocateOptions>(options));
+    object_of(tree).closest_points(vertices_of("points", points, n, stride),
+                                   span_of<ClosestPointOf<Number>>("closest", closest, n),
+                                   *PointOptions<RAYLANES_OPTIONS(ClosestPointOptions)>(options));
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_closest_points,
-                              raylanes_bvhd_closest_points)(const RAYLANES_HANDLE* tree, const void* points,
-                                                            std::size_t n, std::size_t stride,
-                                                            RAYLANES_RECORD(closest_point) * closest,
-                                                            const raylanes_point_options* options) {
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_signed_distances,
+                                   raylanes_bvhd_signed_distances)(const RAYLANES_HANDLE* tree,
+                                                                   const void* points, std::size_t n,
+                                                                   std::size_t stride, Number* distances,
+                                                                   const raylanes_point_options* options) {
   return status_of([&] {
-    tree_of(tree).closest_points(vertices_of("points", points, n, stride),
-                                 span_of<ClosestPointOf<Number>>("closest", closest, n),
-                                 point_options<RAYLANES_OPTIONS(ClosestPointOptions)>(options));
+    object_of(tree).signed_distances(vertices_of("points", points, n, stride),
+                                     span_of<Number>("distances", distances, n),
+                                     *PointOptions<RAYLANES_OPTIONS(SignedDistanceOptions)>(options));
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_signed_distances,
-                              raylanes_bvhd_signed_distances)(const RAYLANES_HANDLE* tree, const void* points,
-                                                              std::size_t n, std::size_t stride,
-                                                              Number* distances,
-                                                              const raylanes_point_options* options) {
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_winding_numbers,
+                                   raylanes_bvhd_winding_numbers)(const RAYLANES_HANDLE* tree,
+                                                                  const void* points, std::size_t n,
+                                                                  std::size_t stride, Number* numbers,
+                                                                  const raylanes_point_options* options) {
   return status_of([&] {
-    tree_of(tree).signed_distances(vertices_of("points", points, n, stride),
-                                   span_of<Number>("distances", distances, n),
-                                   point_options<RAYLANES_OPTIONS(SignedDistanceOptions)>(options));
-  });
-}
-
-raylanes_status RAYLANES_CALL(raylanes_bvh_winding_numbers,
-                              raylanes_bvhd_winding_numbers)(const RAYLANES_HANDLE* tree, const void* points,
-                                                             std::size_t n, std::size_t stride,
-                                                             Number* numbers,
-                                                             const raylanes_point_options* options) {
-  return status_of([&] {
-    tree_of(tree).winding_numbers(vertices_of("points", points, n, stride),
-                                  span_of<Number>("numbers", numbers, n),
-                                  point_options<WindingOptions>(options));
+    object_of(tree).winding_numbers(vertices_of("points", points, n, stride),
+                                    span_of<Number>("numbers", numbers, n),
+                                    *PointOptions<WindingOptions>(options));
   });
 }
 

@@ -1,10 +1,12 @@
-// The C interface: trees over triangles of floats and doubles, their queries, and roots of arrays, for C99 and all that
-// can call C. docs/guide/from_c.md has examples.
+// The C interface: trees over triangles of floats and doubles, scenes, their queries, and roots of arrays, for C99 and
+// all that can call C. docs/guide/from_c.md has examples.
 //
 // All functions:
 // - Nothing is thrown. A function that can fail returns a status, and raylanes_last_message() has one line about it.
 //   If the status is RAYLANES_INVALID_ARGUMENT, results are unchanged.
 // - Many threads may use one tree at the same time, but not while it is refitted or destroyed.
+// - A function of yours that a call calls may call the library, but change nothing that the call uses. If it is C++, it
+//   may throw: the status is RAYLANES_FAILED.
 // - `options` may be NULL: each member then has its default.
 // - An array may be NULL if it has no elements. Elements lie `stride` bytes apart, at any alignment; 0: side by side.
 //   Arrays without a stride need the alignment of their elements. Arrays of results overlap no other array, but for
@@ -72,7 +74,8 @@ RAYLANES_STATUS raylanes_bvhd_create(raylanes_bvhd** tree, const void* vertices,
                                      size_t vertex_stride, const void* triangles, size_t triangle_count,
                                      size_t triangle_stride, const raylanes_build_options* options);
 /// Makes this the tree of another mesh with as many triangles, such as the same one in motion, faster than a build. If
-/// this fails, the tree is unchanged. `threads` is as in raylanes_build_options.
+/// this fails, the tree is unchanged. Scenes that have the tree keep it as it was: a copy is refitted then. `threads`
+/// is as in raylanes_build_options.
 RAYLANES_STATUS raylanes_bvh_refit(raylanes_bvh* tree, const void* vertices, size_t vertex_count,
                                    size_t vertex_stride, const void* triangles, size_t triangle_count,
                                    size_t triangle_stride, int32_t threads);
@@ -228,6 +231,14 @@ RAYLANES_STATUS raylanes_bvhd_count_crossings(const raylanes_bvhd* tree, const v
                                               size_t stride, raylanes_crossing_count* counts,
                                               const raylanes_ray_options* options);
 
+/// Finds where each ray runs within the solids of the tree, each entry with its exit: lists of raylanes_stretch.
+/// `facing` must be RAYLANES_FACING_ANY. <raylanes/stretches.hpp> has the definition.
+RAYLANES_STATUS raylanes_bvh_stretches(const raylanes_bvh* tree, const void* rays, size_t n, size_t stride,
+                                       raylanes_lists** lists, const raylanes_ray_options* options);
+/// Finds where each ray of doubles runs within the solids of the tree: lists of raylanes_stretchd.
+RAYLANES_STATUS raylanes_bvhd_stretches(const raylanes_bvhd* tree, const void* rays, size_t n, size_t stride,
+                                        raylanes_lists** lists, const raylanes_ray_options* options);
+
 // The triangles of a tree, as the mesh had them at the last build or refit.
 
 /// Writes v0, v1 and v2 of the triangle of each uint32_t: nine floats. A triangle that the tree does not have, such as
@@ -304,4 +315,6 @@ RAYLANES_STATUS raylanes_reciprocald(const double* x, double* y, size_t n, int32
 #ifdef __cplusplus
 }
 #endif
+
+#include <raylanes/raylanes_scenes.h>
 #endif

@@ -12,13 +12,16 @@ typedef enum raylanes_status {
   RAYLANES_INVALID_ARGUMENT = 1,  ///< The message says which one, and what is allowed.
   RAYLANES_OUT_OF_MEMORY = 2,     ///< On several threads some results may be written.
   RAYLANES_TOO_LARGE = 3,         ///< A tree would have more nodes or leaves than can be numbered.
-  RAYLANES_BAD_FILE = 4,          ///< Bytes are no tree, or a file cannot be opened, read or written.
-  RAYLANES_SMALL_BUFFER = 5,      ///< The caller's buffer is too small.
-  RAYLANES_FAILED = 6             ///< Anything else, such as a thread that cannot be started.
+  RAYLANES_BAD_FILE = 4,      ///< Bytes are no tree or scene, or a file cannot be opened, read or written.
+  RAYLANES_SMALL_BUFFER = 5,  ///< The caller's buffer is too small.
+  RAYLANES_FAILED = 6,        ///< Anything else, such as a thread that cannot be started.
+  RAYLANES_CANCELLED = 7      ///< A function of the caller ended the call. Some results may be written.
 } raylanes_status;
 
 /// The primitive of a miss.
 #define RAYLANES_NO_PRIMITIVE 0xffffffffu
+/// The geometry and the instance of a miss in a scene.
+#define RAYLANES_NO_PART 0xffffffffu
 
 /// The points origin + t·direction with tmin <= t <= tmax. The direction may have any length. A ray hits nothing if a
 /// coordinate is not finite, the direction is zero, tmin or tmax is NaN, or tmin > tmax.
@@ -41,6 +44,13 @@ typedef struct raylanes_hitd {
   uint32_t primitive, unused;
 } raylanes_hitd;
 
+/// A hit in a scene, and what was hit. A miss has RAYLANES_NO_PRIMITIVE and RAYLANES_NO_PART.
+typedef struct raylanes_scene_hit {
+  float t, u, v;
+  uint32_t primitive;           ///< the index within the geometry
+  uint32_t geometry, instance;  ///< of the scene
+} raylanes_scene_hit;
+
 /// A crossing of a ray and the surface.
 typedef struct raylanes_crossing {
   float t;
@@ -53,6 +63,34 @@ typedef struct raylanes_crossingd {
   uint32_t primitive;
   int32_t side;
 } raylanes_crossingd;
+
+/// A crossing of a ray and the surface of an instance. The side is that in the space of the instance.
+typedef struct raylanes_scene_crossing {
+  float t;
+  uint32_t primitive;
+  int32_t side;
+  uint32_t geometry, instance;
+} raylanes_scene_crossing;
+
+/// A stretch of a ray within solids, along which the winding number is one number other than 0.
+typedef struct raylanes_stretch {
+  float entry, exit;             ///< entry < exit
+  uint32_t entered_by, left_by;  ///< the triangles there; RAYLANES_NO_PRIMITIVE where the ray begins or ends
+  int32_t winding;               ///< 1 in a closed mesh whose normals point out
+} raylanes_stretch;
+/// A stretch of a ray of doubles.
+typedef struct raylanes_stretchd {
+  double entry, exit;
+  uint32_t entered_by, left_by;
+  int32_t winding;
+} raylanes_stretchd;
+/// A stretch of a ray within an instance.
+typedef struct raylanes_scene_stretch {
+  float entry, exit;
+  uint32_t entered_by, left_by;
+  int32_t winding;
+  uint32_t geometry, instance;
+} raylanes_scene_stretch;
 
 /// How often a ray crosses the surface, and the sum of the sides.
 typedef struct raylanes_crossing_count {
@@ -71,6 +109,41 @@ typedef struct raylanes_closest_pointd {
   double distance_squared, distance, point[3], u, v;
   uint32_t primitive, unused;
 } raylanes_closest_pointd;
+
+/// A sphere. If the radius is negative or NaN, or its square overflows, nothing hits it.
+typedef struct raylanes_sphere {
+  float centre[3], radius;
+} raylanes_sphere;
+
+/// How a scene is traced. Meshes that stand where they were made are traced as one tree, the common tree.
+typedef struct raylanes_scene_report {
+  size_t common_trees;         ///< common trees: up to four, for instances of different masks
+  size_t common_instances;     ///< instances in them
+  size_t common_triangles;     ///< their triangles
+  size_t common_bytes;         ///< their memory, besides the trees of geometries
+  size_t mesh_triangles;       ///< triangles of all geometries
+  size_t meshes_without_tree;  ///< meshes that needed no tree of their own so far
+} raylanes_scene_report;
+
+// Functions of the caller get the pointer that was given with them.
+
+/// A function that rejects hits of a batch. hits[k] is a hit of ray rays[k] of the call: a raylanes_hit, in trees of
+/// doubles a raylanes_hitd, in scenes a raylanes_scene_hit. Set rejected[k], which is 0, to 1 to trace the ray on after
+/// that hit. Return 0, or any other number to end the call with RAYLANES_CANCELLED.
+/// The calling thread calls it, with one hit of each of many rays. It sees the hits of a ray in order, each once, up to
+/// the one that it keeps. Calls with one ray ask about one hit, in any order, perhaps behind the result and more than
+/// once.
+typedef int32_t (*raylanes_filter)(void* context, size_t count, const size_t* rays, const void* hits,
+                                   uint8_t* rejected);
+/// A function that a long call calls with the share of its work that is done: 0 first, 1 last, never decreasing. Return
+/// 0, or any other number to end the call with RAYLANES_CANCELLED.
+/// A build calls it from any of its threads, one at a time; a query from the calling thread, about every 20 ms.
+typedef int32_t (*raylanes_progress)(void* context, double share);
+/// A test of a primitive of your own: if the ray hits it with tmin <= t <= tmax, set t, u and v of *hit and return 1,
+/// else 0. Any thread that traces calls it. Hits must lie in the box of the primitive. <raylanes/bounded_tree.hpp> says
+/// how a primitive has several hits.
+typedef int32_t (*raylanes_primitive_test)(void* context, uint32_t primitive, const raylanes_ray* ray,
+                                           raylanes_hit* hit);
 
 /// Builders of trees: queries return the same bytes, times differ. Trees of doubles have no spatial splits.
 enum raylanes_builder {
@@ -109,12 +182,19 @@ enum raylanes_accuracy {
 
 /// How a tree is built.
 typedef struct raylanes_build_options {
-  size_t size;       ///< sizeof(raylanes_build_options)
-  int32_t builder;   ///< a raylanes_builder
-  int32_t threads;   ///< 1, the default: the calling thread; n: up to n; 0: one a core
-  int32_t optimize;  ///< not 0: subtrees are moved to where they cost less; default 0
-  int32_t choose;    ///< not 0: the builder is chosen by the mesh and `rays`; default 0
-  double rays;       ///< with `choose`: about how many rays will be traced; default 0: many
+  size_t size;                 ///< sizeof(raylanes_build_options)
+  int32_t builder;             ///< a raylanes_builder
+  int32_t threads;             ///< 1, the default: the calling thread; n: up to n; 0: one a core
+  int32_t optimize;            ///< not 0: subtrees are moved to where they cost less; default 0
+  int32_t choose;              ///< not 0: the builder is chosen by the mesh and `rays`; default 0
+  double rays;                 ///< with `choose`: about how many rays will be traced; default 0: many
+  raylanes_progress progress;  ///< default NULL
+  void* progress_context;
+  /// For primitives of your own: the most in a leaf, 1 to 8; default 1.
+  uint32_t max_in_leaf;
+  /// For primitives of your own: by how much boxes are enlarged for rounding errors of your test, as a share of the
+  /// largest coordinate of boxes and ray origins, 0 to 1; default 2^-20.
+  float slack;
 } raylanes_build_options;
 
 /// How rays are traced.
@@ -125,14 +205,24 @@ typedef struct raylanes_ray_options {
   const char* path;       ///< the name of an ISA path; default NULL
   const uint8_t* active;  ///< the active rays: bit i % 8 of byte i / 8; default NULL: all
   /// For each ray the uint32_t of a triangle that is not there for it, or RAYLANES_NO_PRIMITIVE; default NULL: none.
-  /// These may be the primitives of hits, sizeof(raylanes_hit) bytes apart.
+  /// These may be the primitives of hits, sizeof(raylanes_hit) bytes apart. Scenes also read the instance of each:
+  /// skip_to_instance says where. There a stride of 0 means hits side by side: skip = &hits[0].primitive.
   const void* skip;
   size_t skip_stride;
-  size_t max_count;  ///< all_hits and crossings keep the first so many items of each ray; default SIZE_MAX
+  /// all_hits, crossings and stretches keep the first so many items of each ray; default SIZE_MAX.
+  size_t max_count;
   /// In closest and closest_crossing, for each ray a hit of the tree, after which its first one is found, in the order
-  /// of t, then of primitives. After a miss there is none, after t = -infinity the first. Default NULL: none.
+  /// of t, then of primitives; in scenes of t, then instance, then primitive. After a miss there is none, after
+  /// t = -infinity the first. Default NULL: none.
   const void* after;
   size_t after_stride;
+  uint32_t mask;  ///< in scenes: instances whose mask has a bit in common with it are there; default all bits
+  /// In scenes: the bytes from the primitives of `skip` to their instances; default as in a raylanes_scene_hit.
+  int32_t skip_to_instance;
+  raylanes_filter filter;  ///< of closest, closest1 and occluded…; others refuse it; default NULL
+  void* filter_context;
+  raylanes_progress progress;  ///< of batches; default NULL
+  void* progress_context;
 } raylanes_ray_options;
 
 /// How points are looked up.
@@ -145,7 +235,9 @@ typedef struct raylanes_point_options {
   /// In closest_points and signed_distances, triangles farther away are ignored, by NaN all. Default infinity. Trees of
   /// floats round it to float.
   double max_distance;
-  double accuracy;  ///< of winding_numbers: the greatest error of expansions; default 1e-6
+  double accuracy;             ///< of winding_numbers: the greatest error of expansions; default 1e-6
+  raylanes_progress progress;  ///< default NULL
+  void* progress_context;
 } raylanes_point_options;
 
 #endif

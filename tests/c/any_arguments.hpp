@@ -3,41 +3,11 @@
 
 #include <raylanes/raylanes.h>
 
-#include <raylanes/doubles.hpp>
-
-#include "../fuzz/any_doubles.hpp"
-#include "../fuzz/any_mesh.hpp"
 #include "../fuzz/damaged_file.hpp"
 #include "../fuzz/strided.hpp"
-#include "calls.hpp"
+#include "any_worlds.hpp"
 
 namespace raylanes::testing {
-
-inline constexpr std::size_t max_elements = 40;
-
-// A mesh and rays of any numbers.
-template <class Number>
-struct World;
-template <>
-struct World<float> {
-  explicit World(Bytes& bytes) : mesh(any_mesh(bytes)) {
-    Coordinates coordinates(bytes);
-    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
-      rays.push_back(any_ray(bytes, coordinates, mesh));
-  }
-  Mesh mesh;
-  std::vector<Ray> rays;
-};
-template <>
-struct World<double> {
-  explicit World(Bytes& bytes) : coordinates(bytes), mesh(any_double_mesh(bytes, coordinates)) {
-    for (std::size_t n = bytes.below(max_elements + 1); n > 0; --n)
-      rays.push_back(any_double_ray(bytes, coordinates, mesh));
-  }
-  DoubleCoordinates coordinates;
-  DoubleMesh mesh;
-  std::vector<RayD> rays;
-};
 
 class AnyArguments {
  public:
@@ -88,6 +58,7 @@ class AnyArguments {
     build_.optimize = static_cast<std::int32_t>(bytes_.below(2));
     build_.choose = static_cast<std::int32_t>(bytes_.below(2));
     build_.rays = bytes_.number<double>();
+    if (bytes_.chance(48)) build_.progress = go_on;
     return given(build_, defaults);
   }
   BuildOptions build_options_of_cpp() const {
@@ -98,37 +69,55 @@ class AnyArguments {
             .rays = build_.rays};
   }
 
-  // hits: what the option `after` may be.
-  template <class Record>
-  const raylanes_ray_options* ray_options(std::size_t n, const AfterRecords<Record>& hits) {
+  // hits: what the option `after` may be. AnyHit: what the object finds.
+  template <class AnyHit>
+  const raylanes_ray_options* ray_options(std::size_t n, const HitRecords<AnyHit>& hits, bool takes_filter) {
+    constexpr bool is_in_scene = std::is_same_v<AnyHit, SceneHit>;
     rays_ = default_ray_options();
     rays_.threads = threads();
     rays_.facing = enumerator(3);
     rays_.path = path();
     if (bytes_.chance(64)) rays_.active = mask();
     if (bytes_.chance(64)) {
+      // In hits of scenes: options of an earlier version say neither how far these lie apart nor where instances do.
       skip_.take(n, bytes_.below(max_gap));
-      std::vector<std::uint32_t> skipped(n);
-      for (std::uint32_t& primitive : skipped) primitive = static_cast<std::uint32_t>(bytes_.below(48)) - 4;
+      std::vector<SceneHit> skipped(n);
+      for (SceneHit& each : skipped) {
+        each.primitive = static_cast<std::uint32_t>(bytes_.below(48)) - 4;
+        each.instance = static_cast<std::uint32_t>(bytes_.below(6));
+      }
       skip_.put(skipped);
-      if (n > 0) rays_.skip = skip_.first, rays_.skip_stride = stride(skip_, sizeof(std::uint32_t));
+      if (n > 0) {
+        rays_.skip = skip_.first + offsetof(SceneHit, primitive);
+        rays_.skip_stride = is_wrong() ? refused(1 + bytes_.below(3)) : skip_.stride;
+      }
+      if (is_in_scene && n > 0 && is_wrong()) rays_.skip_to_instance = refused(0);
     }
     if (hits.first != nullptr && hits.count > 0 && bytes_.chance(64))
-      rays_.after = hits.first, rays_.after_stride = stride(hits.stride, sizeof(Record));
+      rays_.after = hits.first, rays_.after_stride = stride(hits.stride, sizeof(AnyHit));
+    if (bytes_.chance(64)) rays_.mask = static_cast<std::uint32_t>(bytes_.below(4));
+    if (bytes_.chance(48)) rays_.progress = go_on;
+    if (takes_filter ? bytes_.chance(48) : is_wrong())
+      rays_.filter = takes_filter ? reject_in_c<AnyHit> : refused(reject_in_c<AnyHit>);
     rays_.max_count = bytes_.chance(128) ? rays_.max_count : bytes_.below(80);
     return given(rays_, default_ray_options());
   }
-  template <class Options>
+  bool has_filter() const { return rays_.filter != nullptr; }
+  template <class Options, class AnyHit>
   Options ray_options_of_cpp(std::size_t n) const {
     Options options;
     options.path = path_named(rays_.path), options.threads = rays_.threads, options.active = rays_.active;
     options.facing = static_cast<Facing>(rays_.facing);
+    const std::size_t side_by_side =
+        std::is_same_v<AnyHit, SceneHit> ? sizeof(AnyHit) : sizeof(std::uint32_t);
     if (rays_.skip != nullptr)
-      options.skip = {rays_.skip, n, rays_.skip_stride == 0 ? sizeof(std::uint32_t) : rays_.skip_stride};
+      options.skip = {rays_.skip, n, rays_.skip_stride == 0 ? side_by_side : rays_.skip_stride,
+                      rays_.skip_to_instance};
+    if constexpr (requires { options.mask; }) options.mask = rays_.mask;
     if constexpr (requires { options.after; })
       if (rays_.after != nullptr)
-        options.after = {rays_.after, n,
-                         rays_.after_stride == 0 ? sizeof(options.after[0]) : rays_.after_stride};
+        options.after = HitRecords<AnyHit>(const_cast<void*>(rays_.after), n,
+                                           rays_.after_stride == 0 ? sizeof(AnyHit) : rays_.after_stride);
     if constexpr (requires { options.max_count; })
       options.max_count = static_cast<std::uint32_t>(std::min<std::size_t>(rays_.max_count, 0xffffffffu));
     return options;
@@ -150,6 +139,7 @@ class AnyArguments {
     points_.max_distance = bytes_.chance(128) ? HUGE_VAL : static_cast<double>(bytes_.number<float>());
     points_.rule = have_rule ? enumerator(4) : static_cast<std::int32_t>(bytes_.word<std::uint32_t>());
     points_.accuracy = bytes_.number<double>();
+    if (bytes_.chance(48)) points_.progress = go_on;
     if (have_accuracy && !(points_.accuracy >= 0)) are_right_ = false;
     return given(points_, default_point_options());
   }
@@ -166,6 +156,10 @@ class AnyArguments {
   }
 
  private:
+  static std::int32_t go_on(void*, double share) {
+    if (!(share >= 0 && share <= 1)) fail("a share that is none");
+    return 0;
+  }
   bool is_wrong() { return bytes_.chance(8); }
   template <class T>
   T refused(T value) {
@@ -213,7 +207,7 @@ class AnyArguments {
   raylanes_ray_options rays_;
   raylanes_point_options points_;
   std::uint8_t mask_[(max_elements + 7) / 8];
-  static inline Strided<std::uint32_t, max_elements> skip_;
+  static inline Strided<SceneHit, max_elements> skip_;
 };
 
 }  // namespace raylanes::testing

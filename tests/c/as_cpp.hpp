@@ -1,4 +1,4 @@
-// Trees of C and of C++ over one mesh, and options as both take them, to compare what calls write.
+// Trees and scenes of C and of C++ over one input, and options as both take them, to compare what calls write.
 #pragma once
 
 #include <raylanes/numbers.hpp>
@@ -13,45 +13,87 @@ namespace raylanes::testing {
 
 inline constexpr std::size_t count = 150;
 
-template <class Number>
+template <class Number, class AnyMesh>
+TreeOfC<Number> c_tree_of(const AnyMesh& mesh) {
+  return made<TreeOfC<Number>>([&](auto** tree) {
+    Apart<PointOf<Number>> vertices(mesh.vertices, 5);
+    Apart<Index3> triangles(mesh.triangles, 3);
+    EXPECT_EQ(CallsOf<Number>::create(tree, vertices.data(), mesh.vertices.size(), vertices.stride(),
+                                      triangles.data(), mesh.triangles.size(), triangles.stride(), nullptr),
+              RAYLANES_OK);
+  });
+}
+
+template <class Kind>
 struct Input;
 template <>
 struct Input<float> {
   Mesh mesh = triangle_soup(300, 0.3f, 11);
   std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 12);
+  Bvh cpp_tree{mesh};
+  TreeOfC<float> c_tree = c_tree_of<float>(mesh);
 };
 template <>
 struct Input<double> {
   DoubleMesh mesh = moved(triangle_soup(300, 0.3f, 11), 3, {1e6, 0, -1e6});
   std::vector<RayD> rays = aimed_rays(mesh, count, 12);
+  BvhD cpp_tree{mesh.vertices, mesh.triangles};
+  TreeOfC<double> c_tree = c_tree_of<double>(mesh);
+};
+// A mesh and a tree, each where it was made and elsewhere, turned, enlarged, in a mirror, with several masks.
+template <>
+struct Input<Scene> {
+  Mesh mesh = triangle_soup(200, 0.3f, 11), ball = ellipsoid(1, {0, 0, 0}, {1, 0.5f, 0.75f});
+  std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 12);
+  Scene cpp_tree;
+  TreeOfC<Scene> c_tree = made<TreeOfC<Scene>>([](auto** scene) { raylanes_scene_create(scene); });
+
+  Input() {
+    const auto tree = c_tree_of<float>(ball);
+    Apart<Float3> vertices(mesh.vertices, 5);
+    Apart<Index3> triangles(mesh.triangles, 3);
+    cpp_tree.add(mesh), cpp_tree.add(Bvh(ball));
+    std::uint32_t geometry = 7, instance = 7;
+    EXPECT_EQ(raylanes_scene_add_mesh(c_tree.get(), vertices.data(), mesh.vertices.size(), vertices.stride(),
+                                      triangles.data(), mesh.triangles.size(), triangles.stride(), nullptr,
+                                      &geometry),
+              RAYLANES_OK);
+    EXPECT_EQ(geometry, 0u);
+    EXPECT_EQ(raylanes_scene_add_tree(c_tree.get(), tree.get(), &geometry), RAYLANES_OK);
+    EXPECT_EQ(geometry, 1u);
+    const Transform transforms[] = {{},
+                                    {},
+                                    {{{0, -1, 0, 0.5f}, {1, 0, 0, 0.25f}, {0, 0, 1, -0.5f}}},
+                                    {{{-2, 0, 0.5f, 0}, {0, 1, 0, 1}, {0, 0, 0.5f, 0}}}};
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      const Transform& transform = transforms[i % 4];
+      const std::uint32_t mask = i % 3 == 0 ? ~0u : i % 3;
+      cpp_tree.place(i / 4, transform, mask);
+      EXPECT_EQ(
+          raylanes_scene_place(c_tree.get(), i / 4, i == 0 ? nullptr : transform.row[0], mask, &instance),
+          RAYLANES_OK);
+      EXPECT_EQ(instance, i);
+    }
+    cpp_tree.update();
+    EXPECT_EQ(raylanes_scene_update(c_tree.get(), 0), RAYLANES_OK);
+  }
 };
 
-template <class Number>
-class CCalls : public ::testing::Test, public Input<Number> {
+template <class Kind>
+class CCalls : public ::testing::Test, public Input<Kind> {
  public:
-  using OfNumber = CallsOf<Number>;
-  using HitOfNumber = HitOf<Number>;
-
-  typename OfNumber::Tree cpp_tree{this->mesh.vertices, this->mesh.triangles};
-  TreeOfC<Number> tree_of_c = made<TreeOfC<Number>>([&](auto** tree_address) {
-    Apart<PointOf<Number>> vertices(this->mesh.vertices, 5);
-    Apart<Index3> triangles(this->mesh.triangles, 3);
-    EXPECT_EQ(OfNumber::create(tree_address, vertices.data(), this->mesh.vertices.size(), vertices.stride(),
-                               triangles.data(), this->mesh.triangles.size(), triangles.stride(), nullptr),
-              RAYLANES_OK);
-  });
-  Apart<RayOf<Number>> rays_of_c{this->rays, 4};
+  Apart<RayOf<NumberOfKind<Kind>>> rays_of_c{this->rays, 4};
 
   // Calls check(options of C, of C++) with each option that queries of rays have.
   template <class Options, class Check>
   void each_ray_option(const Check& check) {
-    std::vector<HitOfNumber> hits(count);
-    cpp_tree.closest(this->rays, hits);
+    std::vector<HitOfKind<Kind>> hits(count);
+    this->cpp_tree.closest(this->rays, hits);
     Random random(13);
     const std::vector<std::vector<std::uint8_t>> masks = masks_for(count, random);
     for (const Path* path : supported_paths())
       for (const int threads : {1, 2, 0})
-        for (std::int32_t variant = 0; variant < 6; ++variant) {
+        for (std::int32_t variant = 0; variant < 7; ++variant) {
           SCOPED_TRACE(std::string(path->name) + ", variant " + std::to_string(variant));
           raylanes_ray_options c = default_ray_options();
           Options options;
@@ -59,9 +101,14 @@ class CCalls : public ::testing::Test, public Input<Number> {
           c.threads = options.threads = threads;
           if (variant < 3) c.facing = variant, options.facing = static_cast<Facing>(variant);
           if (variant == 3) c.active = options.active = masks[5].data();
-          if (variant == 4) c.skip = &hits[0].primitive, c.skip_stride = sizeof hits[0], options.skip = hits;
+          if (variant == 4) {
+            c.skip = &hits[0].primitive, options.skip = hits;
+            if (threads == 1 || std::is_arithmetic_v<Kind>) c.skip_stride = sizeof hits[0];
+          }
           if constexpr (requires { options.after; })
             if (variant == 5) c.after = hits.data(), c.after_stride = sizeof hits[0], options.after = hits;
+          if constexpr (requires { options.mask; })
+            if (variant == 6) c.mask = options.mask = 2;
           check(c, options);
         }
   }
@@ -78,7 +125,7 @@ class CCalls : public ::testing::Test, public Input<Number> {
         if constexpr (requires { options.rule; })
           c.rule = variant % 4, options.rule = static_cast<InsideRule>(c.rule);
         if constexpr (requires { options.max_distance; })
-          if (variant > 1) c.max_distance = options.max_distance = Number(0.25) * Number(variant);
+          if (variant > 1) c.max_distance = options.max_distance = NumberOfKind<Kind>(variant) / 4;
         if constexpr (requires { options.accuracy; })
           if (variant > 1) c.accuracy = options.accuracy = 0.01 * variant;
         check(c, options);
@@ -99,9 +146,15 @@ class CCalls : public ::testing::Test, public Input<Number> {
     const std::size_t* const offsets = raylanes_lists_offsets(lists.get());
     EXPECT_TRUE(same_bytes(std::vector(offsets, offsets + count + 1), expected.offsets));
     const auto* const items = static_cast<const Item*>(raylanes_lists_items(lists.get()));
-    EXPECT_TRUE(same_bytes(std::vector<Item>(items, items + expected.items.size()), expected.items));
+    const std::vector<Item> all(items, items + expected.items.size());
+    if constexpr (requires(Item item) { item == item; })  // with bytes between numbers
+      EXPECT_TRUE(all == expected.items);
+    else
+      EXPECT_TRUE(same_bytes(all, expected.items));
   }
-  auto points() const { return VertexRecords<Number>(this->rays.data(), count, sizeof(RayOf<Number>)); }
+  auto points() const {
+    return VertexRecords<NumberOfKind<Kind>>(this->rays.data(), count, sizeof this->rays[0]);
+  }
 };
 
 }  // namespace raylanes::testing

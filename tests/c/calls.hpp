@@ -1,4 +1,4 @@
-// The C functions of trees by the kind of their numbers, for tests that serve floats and doubles.
+// The C functions of trees and scenes by their kind, for tests that serve all of them.
 #pragma once
 
 #include <raylanes/raylanes.h>
@@ -6,66 +6,86 @@
 #include <memory>
 
 #include <raylanes/doubles.hpp>
+#include <raylanes/scene.hpp>
 
 namespace raylanes::testing {
 
-template <class Number>
+// The kind is float or double for trees, or Scene.
+template <class Kind>
 struct CallsOf;
+// The functions that trees and scenes share, by the beginning of their names.
+#define RAYLANES_SHARED_CALLS(of)                                   \
+  using Handle = of;                                                \
+  static constexpr auto destroy = of##_destroy;                     \
+  static constexpr auto save = of##_save;                           \
+  static constexpr auto save_file = of##_save_file;                 \
+  static constexpr auto load = of##_load;                           \
+  static constexpr auto load_file = of##_load_file;                 \
+  static constexpr auto bounds = of##_bounds;                       \
+  static constexpr auto closest = of##_closest;                     \
+  static constexpr auto occluded = of##_occluded;                   \
+  static constexpr auto closest1 = of##_closest1;                   \
+  static constexpr auto occluded1 = of##_occluded1;                 \
+  static constexpr auto occluded_from = of##_occluded_from;         \
+  static constexpr auto occluded_towards = of##_occluded_towards;   \
+  static constexpr auto closest_crossing = of##_closest_crossing;   \
+  static constexpr auto closest_crossing1 = of##_closest_crossing1; \
+  static constexpr auto count_crossings = of##_count_crossings;     \
+  static constexpr auto all_hits = of##_all_hits;                   \
+  static constexpr auto crossings = of##_crossings;                 \
+  static constexpr auto stretches = of##_stretches
 // Names of functions and types; for doubles they have a d.
-#define RAYLANES_CALLS_OF(Number, TreeOfNumber, d, D)                              \
-  template <>                                                                      \
-  struct CallsOf<Number> {                                                         \
-    using Handle = raylanes_bvh##d;                                                \
-    using Tree = TreeOfNumber;                                                     \
-    using Trace = TraceOptions##D;                                                 \
-    using Closest = ClosestPointOptions##D;                                        \
-    using Distances = SignedDistanceOptions##D;                                    \
-    using CRay = raylanes_ray##d;                                                  \
-    using Corners = Triangle##D;                                                   \
-    using CHit = raylanes_hit##d;                                                  \
-    using CCrossing = raylanes_crossing##d;                                        \
-    using CClosestPoint = raylanes_closest_point##d;                               \
-    static constexpr auto create = raylanes_bvh##d##_create;                       \
-    static constexpr auto refit = raylanes_bvh##d##_refit;                         \
-    static constexpr auto destroy = raylanes_bvh##d##_destroy;                     \
-    static constexpr auto save = raylanes_bvh##d##_save;                           \
-    static constexpr auto save_file = raylanes_bvh##d##_save_file;                 \
-    static constexpr auto load = raylanes_bvh##d##_load;                           \
-    static constexpr auto load_file = raylanes_bvh##d##_load_file;                 \
-    static constexpr auto closest = raylanes_bvh##d##_closest;                     \
-    static constexpr auto occluded = raylanes_bvh##d##_occluded;                   \
-    static constexpr auto closest1 = raylanes_bvh##d##_closest1;                   \
-    static constexpr auto occluded1 = raylanes_bvh##d##_occluded1;                 \
-    using Calls = raylanes_bvh##d##_calls;                                         \
-    static constexpr auto calls_create = raylanes_bvh##d##_calls_create;           \
-    static constexpr auto calls_destroy = raylanes_bvh##d##_calls_destroy;         \
-    static constexpr auto calls_closest = raylanes_bvh##d##_calls_closest;         \
-    static constexpr auto calls_occluded = raylanes_bvh##d##_calls_occluded;       \
-    static constexpr auto occluded_from = raylanes_bvh##d##_occluded_from;         \
-    static constexpr auto occluded_towards = raylanes_bvh##d##_occluded_towards;   \
-    static constexpr auto closest_crossing = raylanes_bvh##d##_closest_crossing;   \
-    static constexpr auto closest_crossing1 = raylanes_bvh##d##_closest_crossing1; \
-    static constexpr auto count_crossings = raylanes_bvh##d##_count_crossings;     \
-    static constexpr auto corners = raylanes_bvh##d##_corners;                     \
-    static constexpr auto bounds = raylanes_bvh##d##_bounds;                       \
-    static constexpr auto all_hits = raylanes_bvh##d##_all_hits;                   \
-    static constexpr auto crossings = raylanes_bvh##d##_crossings;                 \
-    static constexpr auto locate = raylanes_bvh##d##_locate;                       \
-    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;       \
-    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances;   \
-    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;     \
+#define RAYLANES_CALLS_OF(AnyNumber, TreeOfNumber, d, D)                         \
+  template <>                                                                    \
+  struct CallsOf<AnyNumber> {                                                    \
+    using Number = AnyNumber;                                                    \
+    using Tree = TreeOfNumber;                                                   \
+    using Trace = TraceOptions##D;                                               \
+    using Closest = ClosestPointOptions##D;                                      \
+    using Distances = SignedDistanceOptions##D;                                  \
+    using CRay = raylanes_ray##d;                                                \
+    using Corners = Triangle##D;                                                 \
+    using CHit = raylanes_hit##d;                                                \
+    RAYLANES_SHARED_CALLS(raylanes_bvh##d);                                      \
+    static constexpr auto create = raylanes_bvh##d##_create;                     \
+    static constexpr auto refit = raylanes_bvh##d##_refit;                       \
+    using Calls = raylanes_bvh##d##_calls;                                       \
+    static constexpr auto calls_create = raylanes_bvh##d##_calls_create;         \
+    static constexpr auto calls_destroy = raylanes_bvh##d##_calls_destroy;       \
+    static constexpr auto calls_closest = raylanes_bvh##d##_calls_closest;       \
+    static constexpr auto calls_occluded = raylanes_bvh##d##_calls_occluded;     \
+    static constexpr auto corners = raylanes_bvh##d##_corners;                   \
+    static constexpr auto locate = raylanes_bvh##d##_locate;                     \
+    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;     \
+    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances; \
+    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;   \
   }
 RAYLANES_CALLS_OF(float, Bvh, , );
 RAYLANES_CALLS_OF(double, BvhD, d, D);
-#undef RAYLANES_CALLS_OF
-
-template <class Number>
-struct Destroy {
-  void operator()(typename CallsOf<Number>::Handle* tree) const { CallsOf<Number>::destroy(tree); }
+template <>
+struct CallsOf<Scene> {
+  using Number = float;
+  using Tree = Scene;
+  using Trace = TraceOptions;
+  using CRay = raylanes_ray;
+  using CHit = raylanes_scene_hit;
+  RAYLANES_SHARED_CALLS(raylanes_scene);
 };
-// A tree of C; null if the call that made it failed.
-template <class Number>
-using TreeOfC = std::unique_ptr<typename CallsOf<Number>::Handle, Destroy<Number>>;
+#undef RAYLANES_CALLS_OF
+#undef RAYLANES_SHARED_CALLS
+
+template <class Kind>
+using NumberOfKind = typename CallsOf<Kind>::Number;
+template <class Kind>
+using HitOfKind = typename CallsOf<Kind>::Tree::Hit;
+
+template <class Kind>
+struct Destroy {
+  void operator()(typename CallsOf<Kind>::Handle* tree) const { CallsOf<Kind>::destroy(tree); }
+};
+// A tree or scene of C; null if the call that made it failed.
+template <class Kind>
+using TreeOfC = std::unique_ptr<typename CallsOf<Kind>::Handle, Destroy<Kind>>;
 
 struct DestroyLists {
   void operator()(raylanes_lists* lists) const { raylanes_lists_destroy(lists); }
@@ -89,6 +109,24 @@ inline raylanes_point_options default_point_options() {
   raylanes_point_options options;
   raylanes_init_point_options(&options, sizeof options);
   return options;
+}
+
+// A filter of both, that rejects about a half of the hits, by primitive and ray.
+template <class AnyHit>
+bool is_rejected(std::size_t ray, const AnyHit& hit) {
+  return (hit.primitive * 5 + ray) % 7 < 3;
+}
+template <class AnyHit>
+int32_t reject_in_c(void*, std::size_t count, const std::size_t* rays, const void* hits,
+                    std::uint8_t* rejected) {
+  for (std::size_t k = 0; k < count; ++k)
+    rejected[k] = is_rejected(rays[k], static_cast<const AnyHit*>(hits)[k]) ? 1 : 0;
+  return 0;
+}
+template <class AnyHit>
+void reject_in_cpp(std::span<const std::size_t> rays, std::span<const AnyHit> hits,
+                   std::span<std::uint8_t> rejected) {
+  for (std::size_t k = 0; k < rays.size(); ++k) rejected[k] = is_rejected(rays[k], hits[k]) ? 1 : 0;
 }
 
 }  // namespace raylanes::testing

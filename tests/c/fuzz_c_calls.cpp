@@ -11,28 +11,26 @@
 namespace raylanes::testing {
 namespace {
 
-template <class Number>
+template <class Kind>
 class Caller {
-  using C = CallsOf<Number>;
-  using Queries = QueriesOf<Number>;
-  using Hit = HitOf<Number>;
+  using C = CallsOf<Kind>;
+  using Number = typename C::Number;
+  using Queries = QueriesOf<Kind>;
+  using Hit = HitOfKind<Kind>;
+  static constexpr bool is_tree = !std::is_same_v<Kind, Scene>;
   template <class Query>
   using OptionsOf = typename std::decay_t<Query>::Options;
 
  public:
   explicit Caller(Bytes& bytes)
-      : bytes_(bytes), world_(bytes), tree_(world_.mesh.vertices, world_.mesh.triangles), arguments_(bytes) {
-    of_c_ = made<TreeOfC<Number>>([&](auto** tree) {
-      C::create(tree, world_.mesh.vertices.data(), world_.mesh.vertices.size(), 0,
-                world_.mesh.triangles.data(), world_.mesh.triangles.size(), 0, nullptr);
-    });
+      : bytes_(bytes), world_(bytes), tree_(world_.tree()), of_c_(world_.tree_of_c()), arguments_(bytes) {
     if (of_c_ == nullptr) fail(raylanes_last_message());
     rays_.take(world_.rays.size(), bytes_.below(max_gap));
     rays_.put(world_.rays);
   }
 
   void ask() {
-    const std::size_t group = bytes_.below(10);
+    const std::size_t group = bytes_.below(is_tree ? 10 : 7);
     const auto* const tree = arguments_.pointer(of_c_.get());
     const std::size_t n = arguments_.count(world_.rays.size());
     const void* const from = arguments_.first(rays_);
@@ -41,19 +39,22 @@ class Caller {
                                                                      : 3 * sizeof(Number));
     if (group < 4)
       some_query(Queries::of_rays(), bytes_.below(4), [&](const auto& query) {
-        ask_array(query, ray_options<OptionsOf<decltype(query)>>(), world_.rays, tree, from, n, stride);
+        ask_array(query, ray_options<OptionsOf<decltype(query)>>(query.takes_filter), world_.rays, tree, from,
+                  n, stride);
       });
     else if (group < 6)
-      some_query(Queries::of_lists(), bytes_.below(2),
+      some_query(Queries::of_lists(), bytes_.below(3),
                  [&](const auto& query) { ask_lists(query, tree, from, n, stride); });
     else if (group == 6)
       ask_shadows(bytes_.chance(128), tree, from, n, stride);
-    else if (group < 9)
-      some_query(Queries::of_points(), bytes_.below(4), [&](const auto& query) {
-        ask_array(query, point_options<OptionsOf<decltype(query)>>(), points(), tree, from, n, stride);
-      });
-    else
-      ask_corners(tree, from, n, stride);
+    else if constexpr (is_tree) {
+      if (group < 9)
+        some_query(Queries::of_points(), bytes_.below(4), [&](const auto& query) {
+          ask_array(query, point_options<OptionsOf<decltype(query)>>(), points(), tree, from, n, stride);
+        });
+      else
+        ask_corners(tree, from, n, stride);
+    }
     rays_.expect_intact("rays");
   }
 
@@ -65,7 +66,7 @@ class Caller {
     const std::size_t vertex_stride = arguments_.stride(0, 3 * sizeof(Number));
     const std::size_t triangle_stride = arguments_.stride(0, sizeof(Index3));
     bool is_right = arguments_.are_right();
-    const auto other = made<TreeOfC<Number>>([&](auto** tree) {
+    const auto other = made<TreeOfC<Kind>>([&](auto** tree) {
       const raylanes_status status = C::create(tree, vertices.data(), count, vertex_stride, triangles.data(),
                                                triangles.size(), triangle_stride, c);
       try {
@@ -109,14 +110,15 @@ class Caller {
     OfCpp cpp;
   };
   template <class Options>
-  auto ray_options() {
+  auto ray_options(bool takes_filter) {
     // Hits of any bits: the first ones of rays.
-    AfterRecords<Hit> after;
+    HitRecords<Hit> after;
     if constexpr (requires(Options options) { options.after; })
-      after = AfterRecords<Hit>(world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>));
-    const raylanes_ray_options* const c = arguments_.ray_options(world_.rays.size(), after);
+      after = {world_.rays.data(), world_.rays.size(), sizeof(RayOf<Number>)};
+    const std::size_t n = world_.rays.size();
+    const raylanes_ray_options* const c = arguments_.ray_options(n, after, takes_filter);
     return BothOptions<raylanes_ray_options, Options>{
-        c, arguments_.template ray_options_of_cpp<Options>(world_.rays.size())};
+        c, arguments_.template ray_options_of_cpp<Options, Hit>(n)};
   }
   template <class Options>
   auto point_options() {
@@ -133,7 +135,12 @@ class Caller {
     compare<typename std::decay_t<decltype(query)>::Result>(
         query.name, query.has_stride ? bytes_.below(max_gap) : 0,
         [&](void* to, std::size_t apart) { return query.of_c(tree, from, n, stride, to, apart, by.c); },
-        [&](auto& to) { query.of_cpp(tree_, elements, to, by.cpp); });
+        [&](auto& to) {
+          if constexpr (std::decay_t<decltype(query)>::takes_filter)
+            if (arguments_.has_filter())
+              return query.of_cpp(tree_, elements, to, HitFilterOf<Hit>(reject_in_cpp<Hit>), by.cpp);
+          query.of_cpp(tree_, elements, to, by.cpp);
+        });
   }
 
   // The shadows of a light or of a sun, at the origins of rays.
@@ -148,7 +155,7 @@ class Caller {
     Number* const given = fence.last<Number>(3);
     std::copy(light.begin(), light.end(), given);
     const Number* const from = arguments_.pointer(given);
-    const auto by = ray_options<typename C::Trace>();
+    const auto by = ray_options<typename C::Trace>(true);
     compare<std::uint8_t>(
         is_of_light ? "occluded_from" : "occluded_towards", 0,
         [&](void* bits, std::size_t) {
@@ -157,8 +164,9 @@ class Caller {
                              : C::occluded_towards(tree, from, rays, n, stride, dark, by.c);
         },
         [&](auto& dark) {
-          is_of_light ? tree_.occluded_from(light, points(), dark, ends, by.cpp)
-                      : tree_.occluded_towards(light, points(), dark, by.cpp);
+          const HitFilterOf<Hit> filter = arguments_.has_filter() ? reject_in_cpp<Hit> : HitFilterOf<Hit>();
+          is_of_light ? tree_.occluded_from(light, points(), dark, filter, ends, by.cpp)
+                      : tree_.occluded_towards(light, points(), dark, filter, by.cpp);
         });
   }
 
@@ -189,19 +197,33 @@ class Caller {
   }
 
   void ask_lists(const auto& query, const auto* tree, const void* from, std::size_t n, std::size_t stride) {
-    const auto by = ray_options<ListOptions>();
-    const bool is_right = arguments_.are_right();
+    const auto by = ray_options<ListOptions>(false);
+    bool is_right = arguments_.are_right();
+    std::invoke_result_t<decltype(query.of_cpp), const decltype(tree_)&, decltype(world_.rays)&,
+                         const ListOptions&>
+        expected;
+    try {
+      if (is_right) expected = query.of_cpp(tree_, world_.rays, by.cpp);
+    } catch (const std::invalid_argument&) {  // sides of stretches
+      is_right = false;
+    }
     raylanes_lists* made_by_c = nullptr;
     const raylanes_status status = query.of_c(tree, from, n, stride, &made_by_c, by.c);
     const ListsOfC lists(made_by_c);
     arguments_.expect(query.name, status, is_right);
     if ((lists != nullptr) != is_right) fail(std::string(query.name) + ": lists that were not made, or were");
     if (!is_right) return;
-    const auto expected = query.of_cpp(tree_, world_.rays, by.cpp);
+    using Item = typename decltype(expected.items)::value_type;
     const std::size_t* const offsets = raylanes_lists_offsets(lists.get());
+    const auto* const items = static_cast<const Item*>(raylanes_lists_items(lists.get()));
+    const auto is_same = [](const Item& a, const Item& b) {
+      if constexpr (requires { a == b; })
+        return a == b;
+      else
+        return same_bytes(a, b);
+    };
     if (!std::equal(expected.offsets.begin(), expected.offsets.end(), offsets) ||
-        (!expected.items.empty() && std::memcmp(raylanes_lists_items(lists.get()), expected.items.data(),
-                                                expected.items.size() * sizeof expected.items[0]) != 0))
+        !std::equal(expected.items.begin(), expected.items.end(), items, is_same))
       fail(std::string(query.name) + ": other lists than the class has");
   }
 
@@ -214,7 +236,7 @@ class Caller {
     } catch (const std::runtime_error&) {
       expected = RAYLANES_BAD_FILE;
     }
-    const auto loaded = made<TreeOfC<Number>>([&](auto** tree) {
+    const auto loaded = made<TreeOfC<Kind>>([&](auto** tree) {
       const raylanes_status status = C::load(tree, file.data(), file.size());
       if (status != expected) fail("load: " + std::string(raylanes_last_message()));
     });
@@ -224,9 +246,9 @@ class Caller {
   }
 
   Bytes& bytes_;
-  World<Number> world_;
+  World<Kind> world_;
   typename C::Tree tree_;
-  TreeOfC<Number> of_c_;
+  TreeOfC<Kind> of_c_;
   AnyArguments arguments_;
   static inline Strided<RayOf<Number>, max_elements> rays_;
 };
@@ -258,11 +280,14 @@ void ask_roots(Bytes& bytes, auto of_c, auto of_cpp) {
   x.expect_intact("numbers"), y.expect_intact("roots");
 }
 
-template <class Number>
+template <class Kind>
 void ask_tree(Bytes& bytes) {
-  Caller<Number> caller(bytes);
+  Caller<Kind> caller(bytes);
   const std::size_t kind = bytes.below(8);
-  kind == 0 ? caller.build() : kind == 1 ? caller.save_and_load() : caller.ask();
+  if (kind == 1) return caller.save_and_load();
+  if constexpr (!std::is_same_v<Kind, Scene>)
+    if (kind == 0) return caller.build();
+  caller.ask();
 }
 
 }  // namespace
@@ -274,13 +299,14 @@ int fuzz_c_calls(const std::uint8_t* data, std::size_t size) {
   const auto root = [](auto... arguments) { raylanes::sqrt(arguments...); };
   const auto reciprocal_root = [](auto... arguments) { raylanes::rsqrt(arguments...); };
   const auto reciprocal = [](auto... arguments) { raylanes::reciprocal(arguments...); };
-  const std::size_t kind = bytes.below(14);
+  const std::size_t kind = bytes.below(18);
   kind == 0           ? ask_roots<float>(bytes, raylanes_sqrt, root)
   : kind == 1         ? ask_roots<double>(bytes, raylanes_sqrtd, root)
   : kind == 2         ? ask_roots<float>(bytes, raylanes_rsqrt, reciprocal_root)
   : kind == 3         ? ask_roots<double>(bytes, raylanes_rsqrtd, reciprocal_root)
   : kind == 4         ? ask_roots<float>(bytes, raylanes_reciprocal, reciprocal)
   : kind == 5         ? ask_roots<double>(bytes, raylanes_reciprocald, reciprocal)
+  : kind < 10         ? ask_tree<raylanes::Scene>(bytes)
   : bytes.chance(128) ? ask_tree<float>(bytes)
                       : ask_tree<double>(bytes);
   return 0;

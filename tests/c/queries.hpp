@@ -5,24 +5,26 @@
 #include <tuple>
 
 #include <raylanes/numbers.hpp>
+#include <raylanes/stretches.hpp>
 
 #include "calls.hpp"
 
 namespace raylanes::testing {
 
 // of_c takes what C does, and of_cpp writes the same results. They have a stride in C if `has_stride`.
-template <class AnyResult, class AnyOptions, class OfC, class OfCpp>
+template <class AnyResult, class AnyOptions, bool has_filter, class OfC, class OfCpp>
 struct QueryOfBoth {
   using Result = AnyResult;
   using Options = AnyOptions;
+  static constexpr bool takes_filter = has_filter;
   const char* name;
   OfC of_c;
   OfCpp of_cpp;
   bool has_stride = false;
 };
-template <class Result, class Options, class OfC, class OfCpp>
-QueryOfBoth<Result, Options, OfC, OfCpp> query(const char* name, OfC of_c, OfCpp of_cpp,
-                                               bool has_stride = false) {
+template <class Result, class Options, bool takes_filter = false, class OfC, class OfCpp>
+QueryOfBoth<Result, Options, takes_filter, OfC, OfCpp> query(const char* name, OfC of_c, OfCpp of_cpp,
+                                                             bool has_stride = false) {
   return {name, of_c, of_cpp, has_stride};
 }
 
@@ -47,16 +49,18 @@ void some_query(const Queries& queries, std::size_t number, const Visit& visit) 
 }
 
 #define RAYLANES_METHOD(name) [](const auto& tree, auto&&... arguments) { return tree.name(arguments...); }
-template <class Number>
+template <class Kind>
 struct QueriesOf {
-  using C = CallsOf<Number>;
+  using C = CallsOf<Kind>;
+  using Number = typename C::Number;
+  using Hit = HitOfKind<Kind>;
   using Trace = typename C::Trace;
 
   static auto of_rays() {
     return std::tuple(
-        query<HitOf<Number>, Trace>("closest", C::closest, RAYLANES_METHOD(closest), true),
-        query<HitOf<Number>, Trace>("crossing", C::closest_crossing, RAYLANES_METHOD(closest_crossing), true),
-        query<std::uint8_t, Trace>("occluded", dense(C::occluded), RAYLANES_METHOD(occluded)),
+        query<Hit, Trace, true>("closest", C::closest, RAYLANES_METHOD(closest), true),
+        query<Hit, Trace>("crossing", C::closest_crossing, RAYLANES_METHOD(closest_crossing), true),
+        query<std::uint8_t, Trace, true>("occluded", dense(C::occluded), RAYLANES_METHOD(occluded)),
         query<CrossingCount, ListOptions>("counts", dense(C::count_crossings),
                                           RAYLANES_METHOD(count_crossings)));
   }
@@ -72,7 +76,9 @@ struct QueriesOf {
   // Lists are made, not written.
   static auto of_lists() {
     return std::tuple(query<void, ListOptions>("all_hits", C::all_hits, RAYLANES_METHOD(all_hits)),
-                      query<void, ListOptions>("crossings", C::crossings, RAYLANES_METHOD(crossings)));
+                      query<void, ListOptions>("crossings", C::crossings, RAYLANES_METHOD(crossings)),
+                      query<void, ListOptions>("stretches", C::stretches,
+                                               [](auto&&... arguments) { return stretches(arguments...); }));
   }
 };
 #undef RAYLANES_METHOD

@@ -9,7 +9,7 @@
 #include "../support/limited_memory.hpp"
 #include "../support/random_input.hpp"
 #include "calls.hpp"
-#include "check.h"
+#include "in_c/check.h"
 
 namespace raylanes::testing {
 namespace {
@@ -31,13 +31,17 @@ TEST(CStatus, tells_exceptions_apart) {
   EXPECT_STREQ(raylanes_last_message(), "three");
   EXPECT_EQ(status_of_a(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again))),
             RAYLANES_FAILED);
-  EXPECT_EQ(status_of_a(std::logic_error("four")), RAYLANES_FAILED);
+  EXPECT_EQ(status_of_a(std::out_of_range("four")), RAYLANES_INVALID_ARGUMENT);
   EXPECT_STREQ(raylanes_last_message(), "four");
+  EXPECT_EQ(status_of_a(std::logic_error("five")), RAYLANES_INVALID_ARGUMENT);
+  EXPECT_EQ(status_of_a(std::bad_function_call()), RAYLANES_FAILED);
+  EXPECT_EQ(status_of_a(c::Cancelled()), RAYLANES_CANCELLED);
+  EXPECT_STREQ(raylanes_last_message(), "a function of the caller ended the call");
   EXPECT_EQ(status_of_a(5), RAYLANES_FAILED);
   EXPECT_EQ(status_of_a(c::SmallBuffer{6, 7}), RAYLANES_SMALL_BUFFER);
-  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, the tree takes 7");
+  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, 7 are needed");
   EXPECT_EQ(c::status_of([] {}), RAYLANES_OK);
-  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, the tree takes 7");
+  EXPECT_STREQ(raylanes_last_message(), "the buffer has 6 bytes, 7 are needed");
 }
 
 TEST(CMessages, belong_to_threads) {
@@ -67,6 +71,10 @@ TEST(CInterface, does_in_c_what_it_says) {
 void expect_good_or_out(raylanes_status status) {
   if (status == RAYLANES_OUT_OF_MEMORY) throw std::bad_alloc();
   EXPECT_EQ(status, RAYLANES_OK) << raylanes_last_message();
+}
+
+int32_t never_hit(void*, std::uint32_t, const raylanes_ray*, raylanes_hit*) {
+  return 0;
 }
 
 TEST(CMemory, that_runs_out_is_a_status) {
@@ -99,6 +107,38 @@ TEST(CMemory, that_runs_out_is_a_status) {
   run([&] {
     expect_good_or_out(raylanes_bvh_closest(tree, rays.data(), rays.size(), 0, hits.data(), 0, nullptr));
   });
+  raylanes_scene* scene = nullptr;
+  run([&] {
+    raylanes_scene* made = nullptr;
+    std::uint32_t part = 0;
+    std::vector<raylanes_status> statuses{raylanes_scene_create(&made)};
+    const auto call = [&](raylanes_status status) { statuses.push_back(status); };
+    if (made != nullptr) {
+      call(raylanes_scene_add_tree(made, tree, &part));
+      call(raylanes_scene_add_mesh(made, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
+                                   mesh.triangles.size(), 0, nullptr, &part));
+      call(raylanes_scene_add_primitives(made, rays.data(), 5, 0, never_hit, nullptr, nullptr, &part));
+      for (std::uint32_t i = 0; i < 3; ++i) call(raylanes_scene_place(made, i, nullptr, 1, &part));
+      call(raylanes_scene_update(made, 1));
+    }
+    for (const raylanes_status status : statuses)
+      if (status == RAYLANES_OUT_OF_MEMORY) raylanes_scene_destroy(made), made = nullptr;
+    for (const raylanes_status status : statuses) expect_good_or_out(status);
+    scene = made;
+  });
+  run([&] {
+    raylanes_scene* copy = nullptr;
+    const raylanes_status status = raylanes_scene_copy(&copy, scene);
+    EXPECT_EQ(copy != nullptr, status == RAYLANES_OK);
+    raylanes_scene_destroy(copy);
+    expect_good_or_out(status);
+  });
+  std::vector<SceneHit> scene_hits(rays.size());
+  run([&] {
+    expect_good_or_out(
+        raylanes_scene_closest(scene, rays.data(), rays.size(), 0, scene_hits.data(), 0, nullptr));
+  });
+  raylanes_scene_destroy(scene);
   raylanes_bvh_destroy(tree);
 }
 

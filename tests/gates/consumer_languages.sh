@@ -22,7 +22,7 @@ use_by_languages() {
     install_library "$build"
     local flags compiler number examples=$source/docs/examples/c strict='-Wall -Wextra -Wconversion -Wshadow -Werror'
     flags=$(pkg-config --cflags --libs raylanes)
-    for number in 1 2; do
+    for number in 1 2 3; do
         program_of_page c "$number" >"$work/main.c"
         for compiler in gcc clang; do
             command -v "$compiler" >/dev/null || { echo "SKIPPED: C by $compiler, there is none" && continue; }

@@ -356,6 +356,28 @@ TEST_F(Unmasked, the_interface_of_c) {
     }
     raylanes_bvh_destroy(tree);
   };
+  calls["raylanes_scene"] = [&] {
+    raylanes_scene* scene = nullptr;
+    std::uint32_t part = 0;
+    ASSERT_EQ(raylanes_scene_create(&scene), RAYLANES_OK);
+    raylanes_scene_add_mesh(scene, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
+                            mesh.triangles.size(), 0, nullptr, &part);
+    for (const float x : {0.0f, 1e-42f, 1.0f / 3, 3e38f, infinity}) {
+      const float transform[] = {1, x, 0, 1, 0, 0.3f, x, 0, 0, 0, 1, x};
+      raylanes_scene_place(scene, part, transform, ~0u, &part);
+      part = 0;
+    }
+    ASSERT_EQ(raylanes_scene_update(scene, 1), RAYLANES_OK);
+    std::vector<SceneHit> hits(b.rays.size());
+    raylanes_scene_closest(scene, b.rays.data(), b.rays.size(), 0, hits.data(), 0, nullptr);
+    for (const Ray& ray : b.rays) {
+      const void* const given = &ray;
+      void* const hit = hits.data();
+      raylanes_scene_closest1(scene, static_cast<const raylanes_ray*>(given),
+                              static_cast<raylanes_scene_hit*>(hit), nullptr);
+    }
+    raylanes_scene_destroy(scene);
+  };
   run(calls);
 }
 

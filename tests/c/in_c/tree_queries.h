@@ -1,12 +1,10 @@
-// The queries of one kind of tree, for tree_test.h.
+// The queries of rays of one kind of tree or of scenes, for tree_test.h and scenes.c.
 
 static void test_hits(const TREE* tree) {
   RECORD(hit) hits[3];
   unsigned char apart[3 * 37];
   uint8_t occluded[3];
   size_t i;
-  CALL(calls) * calls;
-  GOOD(CALL(calls_create)(&calls, tree, NULL));
   GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, NULL));
   EXPECT(hits[0].t == 1.5 && hits[0].primitive == 3 && hits[0].u == 0.25 && hits[0].v == 0.5);
   EXPECT(isinf(hits[1].t) && hits[1].u == 0 && hits[1].v == 0 && hits[1].primitive == RAYLANES_NO_PRIMITIVE);
@@ -26,16 +24,9 @@ static void test_hits(const TREE* tree) {
     EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
     GOOD(CALL(occluded1)(tree, rays + i, &is_occluded, NULL));
     EXPECT(is_occluded == occluded[i]);
-    memset(&hit, 0x5a, sizeof hit), is_occluded = 7;
-    GOOD(CALL(calls_closest)(calls, rays + i, &hit));
-    EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
-    GOOD(CALL(calls_occluded)(calls, rays + i, &is_occluded));
-    EXPECT(is_occluded == occluded[i]);
     GOOD(CALL(closest_crossing1)(tree, rays + i, &hit, NULL));
     EXPECT(memcmp(&hit, hits + i, sizeof hit) == 0);
   }
-  CALL(calls_destroy)(calls);
-  CALL(calls_destroy)(NULL);
   GOOD(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, NULL));
   EXPECT(hits[0].t == 1.5 && hits[1].primitive == RAYLANES_NO_PRIMITIVE && hits[2].t == 0.25);
 }
@@ -48,12 +39,14 @@ static void test_shadows(const TREE* tree) {
   static const NUMBER above[3] = {0.25, 0.25, 2}, below[3] = {0.25, 0.25, -3},
                       within[3] = {0.125, 0.125, 0.25};
   static const NUMBER up[3] = {0, 0, 4}, down[3] = {0, 0, -0.5}, nowhere[3] = {0, 0, 0};
-  const uint32_t floors[3] = {0, 0, RAYLANES_NO_PRIMITIVE};
+  RECORD(hit) floors[3];
   const uint8_t active = 5;
   raylanes_ray_options options = ray_options();
   unsigned char apart[1 + 3 * 29];
   uint8_t occluded[3];
   size_t i;
+  memset(floors, 0, sizeof floors);
+  floors[2].primitive = RAYLANES_NO_PRIMITIVE;
   GOOD(CALL(occluded_from)(tree, above, points, 3, 0, 0, 1, occluded, NULL));
   expect_three(occluded, 1, 1, 1);
   GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 1, occluded, NULL));
@@ -80,7 +73,8 @@ static void test_shadows(const TREE* tree) {
   GOOD(CALL(occluded_towards)(tree, down, apart + 1, 3, 29, occluded, NULL));
   expect_three(occluded, 1, 0, 1);
 
-  options.skip = floors, options.threads = 2, options.path = "scalar";
+  options.skip = &floors[0].primitive, options.skip_stride = sizeof *floors, options.threads = 2,
+  options.path = "scalar";
   GOOD(CALL(occluded_from)(tree, below, points, 3, 0, 0, 1, occluded, &options));
   expect_three(occluded, 0, 0, 1);
   GOOD(CALL(occluded_towards)(tree, down, points, 3, 0, occluded, &options));
@@ -166,6 +160,7 @@ static void test_lists(const TREE* tree) {
   const size_t* offsets;
   const RECORD(hit) * hits;
   const RECORD(crossing) * crossings;
+  const RECORD(stretch) * stretches;
   raylanes_crossing_count counts[3];
   GOOD(CALL(all_hits)(tree, rays, 3, 0, &lists, NULL));
   offsets = raylanes_lists_offsets(lists);
@@ -181,6 +176,14 @@ static void test_lists(const TREE* tree) {
   EXPECT(crossings[0].t == 1.5 && crossings[0].side == -1 && crossings[0].primitive == 3);
   EXPECT(crossings[1].t == 2 && crossings[1].side == 1 && crossings[2].side == 1);
   raylanes_lists_destroy(lists);
+  GOOD(CALL(stretches)(tree, rays, 3, 0, &lists, NULL));
+  offsets = raylanes_lists_offsets(lists);
+  stretches = raylanes_lists_items(lists);
+  EXPECT(offsets[1] == 1 && offsets[2] == 1 && offsets[3] == 2);
+  EXPECT(stretches[0].entry == 1.5 && stretches[0].exit == 2 && stretches[0].winding == 1);
+  EXPECT(stretches[0].entered_by == 3 && stretches[0].left_by == 0);
+  EXPECT(stretches[1].entry == 0 && stretches[1].entered_by == RAYLANES_NO_PRIMITIVE);
+  raylanes_lists_destroy(lists);
   GOOD(CALL(count_crossings)(tree, rays, 3, 0, counts, NULL));
   EXPECT(counts[0].crossings == 2 && counts[0].winding == 0 && counts[1].crossings == 0);
   EXPECT(counts[2].crossings == 1 && counts[2].winding == 1);
@@ -188,56 +191,53 @@ static void test_lists(const TREE* tree) {
   EXPECT(raylanes_lists_offsets(NULL) == NULL && raylanes_lists_items(NULL) == NULL);
 }
 
-static void test_triangles(const TREE* tree) {
-  const uint32_t named[3] = {0, RAYLANES_NO_PRIMITIVE, 3};
-  NUMBER three[3][9], lo[3], hi[3];
-  size_t i;
-  GOOD(CALL(corners)(tree, named, 3, 0, three[0]));
-  for (i = 0; i < 9; ++i) {
-    EXPECT(three[0][i] == corners[3 * faces[i / 3] + i % 3]);
-    EXPECT(three[1][i] != three[1][i]);
-    EXPECT(three[2][i] == corners[3 * faces[9 + i / 3] + i % 3]);
-  }
-  GOOD(CALL(bounds)(tree, lo, hi));
-  EXPECT(lo[0] == 0 && lo[1] == 0 && lo[2] == 0 && hi[0] == 1 && hi[1] == 1 && hi[2] == 1);
-}
+static void test_functions_of_rays(const TREE* tree) {
+  raylanes_ray_options options = ray_options();
+  struct reject roof = {3, 0, 0}, stop = {3, 0, 1};
+  double told[2] = {0, 2}, at_once[2] = {0, 0};
+  RECORD(hit) hits[3], hit;
+  uint8_t occluded[3];
+  raylanes_lists* lists = NULL;
+  raylanes_crossing_count counts[3];
+  options.filter = reject_hits, options.filter_context = &roof;
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, &options));
+  EXPECT(hits[0].t == 2 && hits[0].primitive == 0 && isinf(hits[1].t) && hits[2].t == 0.25);
+  EXPECT(roof.calls > 0);
+  GOOD(CALL(closest1)(tree, rays, &hit, &options));
+  EXPECT(memcmp(&hit, hits, sizeof hit) == 0);
+  roof.primitive = 0;
+  GOOD(CALL(occluded)(tree, rays, 3, 0, occluded, &options));
+  expect_three(occluded, 1, 0, 0);
+  GOOD(CALL(occluded1)(tree, rays + 2, occluded, &options));
+  EXPECT(occluded[0] == 0);
+  GOOD(CALL(occluded_from)(tree, points + 3, points, 3, 0, 0, 1, occluded, &options));
+  expect_three(occluded, 0, 0, 0);
+  GOOD(CALL(occluded_towards)(tree, points + 3, points, 3, 0, occluded, &options));
+  EXPECT(occluded[0] == 0);
+  options.filter_context = &stop;
+  FAILS(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), RAYLANES_CANCELLED, "ended the call");
+  stop.calls = 0;
+  FAILS(CALL(closest1)(tree, rays, &hit, &options), RAYLANES_CANCELLED, "ended the call");
+  stop.calls = 0;
+  FAILS(CALL(occluded1)(tree, rays, occluded, &options), RAYLANES_CANCELLED, "ended the call");
+  REFUSED(CALL(closest_crossing)(tree, rays, 3, 0, hits, 0, &options), "filter");
+  REFUSED(CALL(closest_crossing1)(tree, rays, &hit, &options), "filter");
+  REFUSED(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), "filter");
+  REFUSED(CALL(crossings)(tree, rays, 3, 0, &lists, &options), "filter");
+  REFUSED(CALL(stretches)(tree, rays, 3, 0, &lists, &options), "filter");
+  REFUSED(CALL(count_crossings)(tree, rays, 3, 0, counts, &options), "filter");
 
-static void test_points(const TREE* tree) {
-  raylanes_point_options options = point_options();
-  RECORD(closest_point) closest[3];
-  NUMBER distances[3], numbers[3];
-  uint8_t locations[3], active = 2;
-  int32_t rule;
-  for (rule = 0; rule < 4; ++rule) {
-    options.rule = rule;
-    memset(locations, 7, sizeof locations);
-    GOOD(CALL(locate)(tree, points, 3, 0, locations, &options));
-    EXPECT(locations[0] == RAYLANES_INSIDE && locations[1] == RAYLANES_OUTSIDE &&
-           locations[2] == RAYLANES_ON);
-  }
-  GOOD(CALL(closest_points)(tree, points, 3, 0, closest, NULL));
-  EXPECT(closest[0].distance_squared == 0.015625 && closest[1].distance_squared == 4);
-  EXPECT(closest[1].primitive == 0 && closest[1].point[0] == 0.25 && closest[1].point[2] == 0);
-  EXPECT(closest[2].distance_squared == 0);
-  GOOD(CALL(signed_distances)(tree, points, 3, 0, distances, NULL));
-  EXPECT(distances[0] == -0.125 && distances[1] == 2 && distances[2] == 0);
-  GOOD(CALL(winding_numbers)(tree, points, 3, 0, numbers, NULL));
-  EXPECT(numbers[0] == 1 && numbers[1] == 0 && is_near(numbers[2], 0.5));
-
-  options = point_options();
-  options.max_distance = 1, options.accuracy = 0, options.threads = 2, options.path = "scalar";
-  GOOD(CALL(closest_points)(tree, points, 3, 0, closest, &options));
-  EXPECT(closest[1].primitive == RAYLANES_NO_PRIMITIVE && isinf(closest[1].distance_squared));
-  GOOD(CALL(signed_distances)(tree, points, 3, 0, distances, &options));
-  EXPECT(distances[0] == -0.125 && isinf(distances[1]) && distances[1] > 0);
-  GOOD(CALL(winding_numbers)(tree, points, 3, 0, numbers, &options));
-  EXPECT(numbers[0] == 1);
-  // Every second point, and the second of three.
-  GOOD(CALL(locate)(tree, points, 2, 2 * 3 * sizeof *points, locations, NULL));
-  EXPECT(locations[0] == RAYLANES_INSIDE && locations[1] == RAYLANES_ON);
-  options = point_options();
-  options.active = &active;
-  memset(locations, 7, sizeof locations);
-  GOOD(CALL(locate)(tree, points, 3, 0, locations, &options));
-  EXPECT(locations[0] == 7 && locations[1] == RAYLANES_OUTSIDE && locations[2] == 7);
+  options = ray_options();
+  options.progress = tell_progress, options.progress_context = told;
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, &options));
+  EXPECT(told[0] == 1 && hits[0].t == 1.5);
+  told[0] = 0;
+  GOOD(CALL(crossings)(tree, rays, 3, 0, &lists, &options));
+  EXPECT(told[0] == 1);
+  raylanes_lists_destroy(lists);
+  options.progress_context = at_once;
+  FAILS(CALL(occluded)(tree, rays, 3, 0, occluded, &options), RAYLANES_CANCELLED, "ended the call");
+  FAILS(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), RAYLANES_CANCELLED, "ended the call");
+  EXPECT(lists == NULL);
+  GOOD(CALL(closest1)(tree, rays, &hit, &options));  // of batches
 }

@@ -1,43 +1,16 @@
 // The functions of one kind of tree, for the file that includes this and names the kind.
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "check.h"
-
-// Three corners at distance 1 on the axes, and the origin; normals point out.
-static const NUMBER corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-// Down through the tetrahedron, past it, and down again from within, which leaves only.
-static const RECORD(ray) rays[3] = {{{0.25, 0.25, 2}, 0, {0, 0, -1}, INFINITY},
-                                    {{2, 2, 2}, 0, {0, 0, -1}, INFINITY},
-                                    {{0.25, 0.25, 0.25}, 0, {0, 0, -1}, INFINITY}};
-// Inside, outside, on the floor.
-static const NUMBER points[9] = {0.125, 0.125, 0.125, 0.25, 0.25, -2, 0.25, 0.25, 0};
-
-static raylanes_ray_options ray_options(void) {
-  raylanes_ray_options options;
-  GOOD(raylanes_init_ray_options(&options, sizeof options));
-  return options;
-}
-
-static raylanes_point_options point_options(void) {
-  raylanes_point_options options;
-  GOOD(raylanes_init_point_options(&options, sizeof options));
-  return options;
-}
+#include "tetrahedron.h"
+#include "tree_files.h"
+#include "tree_points.h"
+#include "tree_queries.h"
+#include "tree_refused.h"
+#include "tree_refused_points.h"
 
 static TREE* tetrahedron(void) {
   TREE* tree = NULL;
   GOOD(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, NULL));
   EXPECT(tree != NULL);
   return tree;
-}
-
-static int is_near(double a, double b) {
-  return fabs(a - b) <= 1e-6;
 }
 
 static void test_builds(void) {
@@ -70,6 +43,7 @@ static void test_refused_builds(void) {
   static const uint32_t beyond[3] = {0, 1, 4};
   NUMBER broken[9] = {0, 0, 0, 1, 0, 0, 0, NAN, 0};
   raylanes_build_options options;
+  double told[2] = {0, 2};
   TREE* tree = (TREE*)&options;  // anything
   GOOD(raylanes_init_build_options(&options, sizeof options));
   REFUSED(CALL(create)(NULL, corners, 4, 0, faces, 4, 0, NULL), "tree");
@@ -93,6 +67,14 @@ static void test_refused_builds(void) {
   REFUSED(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, &options), "threads");
   options.size = sizeof options + 8;
   REFUSED(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, &options), "options");
+  options.size = sizeof options, options.threads = 1;
+  options.progress = tell_progress, options.progress_context = told;
+  GOOD(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, &options));
+  EXPECT(told[0] == 1);
+  CALL(destroy)(tree);
+  told[0] = told[1] = 0;
+  FAILS(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, &options), RAYLANES_CANCELLED, "ended the call");
+  EXPECT(tree == NULL);
   options.size = 8;  // as if it had no member but its size
   GOOD(CALL(create)(&tree, corners, 4, 0, faces, 4, 0, &options));
   CALL(destroy)(tree);
@@ -115,9 +97,23 @@ static void test_empty_trees(void) {
   CALL(destroy)(tree);
 }
 
-#include "tree_files.h"
-#include "tree_queries.h"
-#include "tree_refused.h"
+static void test_refits(TREE* tree) {
+  NUMBER moved[12];
+  RECORD(hit) hit;
+  size_t i;
+  for (i = 0; i < 12; ++i) moved[i] = corners[i] + (i % 3 == 2 ? 1 : 0);
+  REFUSED(CALL(refit)(NULL, moved, 4, 0, faces, 4, 0, 1), "tree");
+  REFUSED(CALL(refit)(tree, NULL, 4, 0, faces, 4, 0, 1), "vertices");
+  REFUSED(CALL(refit)(tree, moved, 4, 1, faces, 4, 0, 1), "vertices");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, NULL, 4, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, SIZE_MAX, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 3, 0, 1), "triangles");
+  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, -1), "threads");
+  expect_tetrahedron(tree);
+  GOOD(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, 0));
+  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
+  EXPECT(hit.t == 0.5);
+}
 
 void TEST_TREES(void) {
   TREE* tree;
@@ -129,6 +125,11 @@ void TEST_TREES(void) {
   test_shadows(tree);
   test_options_of_rays(tree);
   test_refused_rays(tree);
+  test_refused_bounds(tree);
+  test_functions_of_rays(tree);
+  test_prepared_calls(tree);
+  test_refused_calls(tree);
+  test_progress_of_points(tree);
   test_refused_shadows(tree);
   test_lists(tree);
   test_triangles(tree);

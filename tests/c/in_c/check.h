@@ -1,6 +1,6 @@
 // Shared by the tests in C: checks that count failures and go on.
-#ifndef RAYLANES_TESTS_C_CHECK_H
-#define RAYLANES_TESTS_C_CHECK_H
+#ifndef RAYLANES_TESTS_C_IN_C_CHECK_H
+#define RAYLANES_TESTS_C_IN_C_CHECK_H
 
 #include <raylanes/raylanes.h>
 
@@ -30,6 +30,7 @@ void expect_refused(raylanes_status status, raylanes_status wanted, const char* 
 
 void test_trees_of_floats(void);
 void test_trees_of_doubles(void);
+void test_scenes(void);
 void test_roots(void);
 void test_paths(void);
 void test_options(void);

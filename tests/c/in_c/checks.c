@@ -43,6 +43,7 @@ int check_c_interface(const char* files) {
   test_roots();
   test_trees_of_floats();
   test_trees_of_doubles();
+  test_scenes();
   printf("%d checks, %d failed\n", checks, failures);
   return failures;
 }

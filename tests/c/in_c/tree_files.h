@@ -1,4 +1,4 @@
-// Files and refits of one kind of tree, for tree_test.h.
+// Files of one kind of tree or of scenes, for tree_test.h and scenes.c.
 
 static void expect_tetrahedron(const TREE* tree) {
   RECORD(hit) hit;
@@ -65,34 +65,16 @@ static void test_files(const TREE* tree) {
   bytes[size < 2000 ? size - 1 : 2000] = 0;
   FAILS(CALL(load_file)(&loaded, (const char*)bytes), RAYLANES_BAD_FILE, "xxx...xxx");
   EXPECT(strstr(raylanes_last_message(), "\": ") != NULL);
-  REFUSED(CALL(load)(NULL, bytes, size), "tree");
+  REFUSED(CALL(load)(NULL, bytes, size), KIND);
   REFUSED(CALL(load)(&loaded, NULL, size), "bytes");
   REFUSED(CALL(load)(&loaded, bytes, SIZE_MAX), "bytes");
-  REFUSED(CALL(load_file)(NULL, file_named("a.tree")), "tree");
+  REFUSED(CALL(load_file)(NULL, file_named("a.tree")), KIND);
   REFUSED(CALL(load_file)(&loaded, NULL), "file");
-  REFUSED(CALL(save)(NULL, bytes, size, &size), "tree");
+  REFUSED(CALL(save)(NULL, bytes, size, &size), KIND);
   REFUSED(CALL(save)(tree, NULL, size, &size), "buffer");
   REFUSED(CALL(save)(tree, bytes, size, NULL), "size");
-  REFUSED(CALL(save_file)(NULL, file_named("a.tree")), "tree");
+  REFUSED(CALL(save_file)(NULL, file_named("a.tree")), KIND);
   REFUSED(CALL(save_file)(tree, NULL), "file");
   free(bytes);
   free(again);
-}
-
-static void test_refits(TREE* tree) {
-  NUMBER moved[12];
-  RECORD(hit) hit;
-  size_t i;
-  for (i = 0; i < 12; ++i) moved[i] = corners[i] + (i % 3 == 2 ? 1 : 0);
-  REFUSED(CALL(refit)(NULL, moved, 4, 0, faces, 4, 0, 1), "tree");
-  REFUSED(CALL(refit)(tree, NULL, 4, 0, faces, 4, 0, 1), "vertices");
-  REFUSED(CALL(refit)(tree, moved, 4, 1, faces, 4, 0, 1), "vertices");
-  REFUSED(CALL(refit)(tree, moved, 4, 0, NULL, 4, 0, 1), "triangles");
-  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, SIZE_MAX, 0, 1), "triangles");
-  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 3, 0, 1), "triangles");
-  REFUSED(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, -1), "threads");
-  expect_tetrahedron(tree);
-  GOOD(CALL(refit)(tree, moved, 4, 0, faces, 4, 0, 0));
-  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
-  EXPECT(hit.t == 0.5);
 }
