@@ -19,11 +19,10 @@ from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_c
                       faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays, scene_crossing_dtype,
                       scene_hit_dtype, scene_stretch_dtype, stand_ins as _stand_ins, stretch_dtype,
                       volume_of as _volume_of)
-from ._meshes import parts_of as _parts_of
+from ._meshes import MeshWarning, parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
 from ._scalars import count as _count
-from ._warn import MeshWarning
 from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, Lists, Stretch, Stretches
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt

@@ -4,8 +4,8 @@ import numpy as np
 
 from ._answer import Answer
 from ._arrays import DOUBLES, FLOATS, no_primitive, packed, rows
+from ._meshes import warn, warn_of_sides
 from ._scalars import function, real, threads_of, word
-from ._warn import warn, warn_of_sides
 from .hits import ClosestPoints
 from .paths import chosen
 

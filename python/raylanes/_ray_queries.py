@@ -3,9 +3,9 @@
 import numpy as np
 
 from ._arrays import given_rays
+from ._meshes import warn_of_sides
 from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
                       skipped)
-from ._warn import warn_of_sides
 from .hits import Crossings, Hits, Stretches
 
 

@@ -6,12 +6,11 @@ from . import _native
 from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for, require_kept,
                       vertices_of)
 from ._files import Headed
-from ._meshes import parts_of
+from ._meshes import parts_of, warn
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
 from ._scalars import flag, function, real, threads_of, word
 from ._stored import StoredTree
-from ._warn import warn
 
 
 class _Tree(RayQueries, PointQueries, StoredTree):
