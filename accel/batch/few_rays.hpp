@@ -19,22 +19,45 @@ inline std::size_t batch_size_of(const TreeView& tree) {
 // But from so many rays of floats on, nearest hits of rays with one origin may be a packet's: measured.
 inline constexpr std::size_t min_packet = 32;
 
+// Whether options are the defaults, but for the mask and the threads. Without a branch for each of them.
+template <class Options>
+bool are_defaults(const Options& options) {
+  const auto bits = [](const auto* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); };
+  std::uintptr_t some = bits(options.path) | bits(options.active) | bits(options.progress) |
+                        bits(options.skip.first) | options.skip.count | bits(options.after.first) |
+                        options.after.count | static_cast<std::uintptr_t>(options.facing);
+  if constexpr (requires { options.counters; }) {
+    struct Choices {
+      TriangleTest test;
+      Grade grade;
+      TraversalMode mode;
+      BatchHint hint;
+    };
+    static_assert(offsetof(Options, hint) == offsetof(Choices, hint) &&
+                  sizeof(Choices) == sizeof(std::uint32_t));
+    constexpr Options by_default;
+    constexpr Choices usual{by_default.test, by_default.grade, by_default.mode, by_default.hint};
+    std::uint32_t given;
+    std::memcpy(&given, &options, sizeof given);
+    some |= bits(options.counters) | (given ^ std::bit_cast<std::uint32_t>(usual));
+  }
+  return some == 0 && options.threads >= 0;
+}
+
 // Rays that lie as kernels read them and the answers to them in a row. False if there are many of them, or something is
 // asked of the batch that the loop does not have.
 template <class AnyRay, class Answer>
 class FewRays {
  public:
-  FewRays() = default;  // many
+  // are_default: as are_defaults() of the options. limit: so many rays are many.
   template <class Options>
   FewRays(const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count, const Options& options,
-          std::size_t limit)
+          bool are_default, std::size_t limit)
       : rays_(static_cast<const AnyRay*>(rays.first)), answers_(answers), size_(rays.count) {
     if (std::is_same_v<AnyRay, RayD> && !only_decides) limit = std::min(limit, min_flying_batch);
     const bool is_plain = size_ < limit && count == size_ && answers != nullptr && lie_plain(rays) &&
-                          options.active == nullptr && options.progress == nullptr &&
-                          options.after.first == nullptr && options.after.count == 0 &&
                           are_apart(rays_, size_ * sizeof(AnyRay), answers, size_ * sizeof(Answer)) &&
-                          skips_stay(options.skip);
+                          (are_default || stay_plain(options));
     if (!is_plain) rays_ = nullptr;
   }
   explicit operator bool() const { return rays_ != nullptr; }
@@ -52,6 +75,11 @@ class FewRays {
   static bool are_apart(const void* a, std::size_t bytes_of_a, const void* b, std::size_t bytes_of_b) {
     const auto at_a = reinterpret_cast<std::uintptr_t>(a), at_b = reinterpret_cast<std::uintptr_t>(b);
     return at_b - at_a >= bytes_of_a && at_a - at_b >= bytes_of_b;
+  }
+  template <class Options>
+  bool stay_plain(const Options& options) const {
+    return options.active == nullptr && options.progress == nullptr && options.after.first == nullptr &&
+           options.after.count == 0 && skips_stay(options.skip);
   }
   // Whether no answer is written where what a later ray skips is read: that is elsewhere, or in the ray's own answer.
   bool skips_stay(const PrimitiveView& skip) const {

@@ -4,7 +4,7 @@ namespace raylanes {
 namespace {
 
 // Lines may miss an end by that share of the way to it: half of what kernels bear.
-constexpr double largest_miss = 0x1p-20;
+constexpr double largest_miss = 0x1p-20, missed_by_rounding = 0x1p-22;  // a direction is rounded
 constexpr std::size_t looked_at = 16;
 
 template <class AnyRay>
@@ -169,13 +169,15 @@ std::optional<Float3> shared_end_of(std::span<const Ray> rays) {
   const std::size_t step = rays.size() / looked_at;
   const Ray& first = rays[0];
   const Point o(first.origin), d(first.direction);
-  const Float3 candidates[] = {(o + d).rounded(), (o + static_cast<double>(first.tmax) * d).rounded(),
-                               meeting_point(first, max_different(rays, step))};
   std::optional<Float3> best;
   double least = largest_miss;
-  for (const Float3& candidate : candidates)
+  const auto try_point = [&](const Float3& candidate) {
     if (const double missed = max_missed(rays, step, candidate); missed <= least)
       best = candidate, least = missed;
+    return least <= missed_by_rounding;
+  };
+  if (!try_point((o + d).rounded()) && !try_point((o + static_cast<double>(first.tmax) * d).rounded()))
+    try_point(meeting_point(first, max_different(rays, step)));
   return best;
 }
 

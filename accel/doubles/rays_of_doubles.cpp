@@ -16,6 +16,11 @@ class KernelsOfDoubles {
     if (tree != nullptr) kernels_ = &kernels_of(checked_path(options.path)).doubles;
   }
   explicit operator bool() const { return tree_ != nullptr; }
+  std::size_t batch_size() const { return batch_size_of(tree_->ready.tree); }
+  template <class Answer>
+  bool takes(const FewRays<RayD, Answer>&) const {
+    return true;
+  }
   HitD closest(const RayD& ray, std::size_t i) const {
     return kernels_->closest_of_ray(tree_->ready, ray, options_.facing, skipped_of(options_, i));
   }
@@ -45,17 +50,13 @@ class RayDoor<BvhD> {
   bool any(const RayD& ray) const {
     return is_quick() ? in_use().any_of_ray(tree_->ready, ray, Facing::any, no_primitive) : any_by(ray, {});
   }
-  KernelsOfDoubles kernels(const TraceOptionsD& options, std::size_t rays) const {
-    const bool are_usual = options.threads >= 0 &&
-                           static_cast<std::size_t>(options.facing) < facing_names.size() &&
-                           options.skip.count == (options.skip.first != nullptr ? rays : 0) &&
-                           options.after.first == nullptr && is_quick();
+  KernelsOfDoubles kernels(const TraceOptionsD& options, std::size_t rays, bool are_default = false) const {
+    const bool are_usual =
+        is_quick() && (are_default || (options.threads >= 0 &&
+                                       static_cast<std::size_t>(options.facing) < facing_names.size() &&
+                                       options.skip.count == (options.skip.first != nullptr ? rays : 0) &&
+                                       options.after.first == nullptr));
     return {are_usual ? tree_ : nullptr, options};
-  }
-  template <class Answer>
-  FewRays<RayD, Answer> few_rays(const RayViewD& rays, Answer* answers, std::size_t count,
-                                 const TraceOptionsD& options) const {
-    return {rays, answers, count, options, is_quick() ? batch_size_of(tree_->ready.tree) : 0};
   }
   HitD closest_by(const RayD& ray, const TraceOptionsD& options) const {
     HitD hit;

@@ -166,11 +166,18 @@ namespace {
 class KernelsOfTree {
  public:
   // `ready`: null if there are none to be used.
-  KernelsOfTree(const TreeView* ready, const TraceOptions& options, std::size_t rays)
+  KernelsOfTree(const TreeView* ready, const TraceOptions& options, std::size_t rays, bool are_default)
       : ready_(ready),
         options_(options),
-        rows_(ready != nullptr ? RowsOfCalls(options, rays) : RowsOfCalls()) {}
+        rows_(ready == nullptr ? RowsOfCalls()
+              : are_default    ? RowsOfCalls(default_row())
+                               : RowsOfCalls(options, rays)) {}
   explicit operator bool() const { return static_cast<bool>(rows_); }
+  std::size_t batch_size() const { return batch_size_of(*ready_); }
+  template <class Answer>
+  bool takes(const FewRays<Ray, Answer>& few) const {
+    return !few.may_be_packet();
+  }
   Hit closest(const Ray& ray, std::size_t i) const {
     return rows_.closest(*ready_, ray, options_.facing, [&] { return skipped_of(options_, i); });
   }
@@ -202,15 +209,8 @@ class RayDoor<TriangleTree> {
     return is_quick() ? default_row().closest(*ready_, ray) : closest_by(ray, {});
   }
   bool any(const Ray& ray) const { return is_quick() ? default_row().any(*ready_, ray) : any_by(ray, {}); }
-  KernelsOfTree kernels(const TraceOptions& options, std::size_t rays) const {
-    return {is_quick() ? ready_ : nullptr, options, rays};
-  }
-  template <class Answer>
-  FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
-                                const TraceOptions& options) const {
-    FewRays few(rays, answers, count, options, is_quick() ? batch_size_of(*ready_) : 0);
-    if (few && few.may_be_packet()) few = {};
-    return few;
+  KernelsOfTree kernels(const TraceOptions& options, std::size_t rays, bool are_default = false) const {
+    return {is_quick() ? ready_ : nullptr, options, rays, are_default};
   }
   [[gnu::cold, gnu::noinline]] Hit closest_by(const Ray& ray, const TraceOptions& options) const {
     Hit hit;

@@ -58,6 +58,7 @@ struct RowsOfCalls {
   const RuledCallRow* chosen = nullptr;
 
   RowsOfCalls() = default;
+  explicit RowsOfCalls(const CallRow& only) : usual(&only) {}
   RowsOfCalls(const TraceOptions& options, std::size_t rays)
       : usual(usual_row(options)), chosen(usual == nullptr ? ruled_row(options, rays) : nullptr) {}
   explicit operator bool() const { return usual != nullptr || chosen != nullptr; }

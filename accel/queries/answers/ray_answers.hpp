@@ -18,29 +18,44 @@ namespace raylanes {
 //   lists()                                  how filters get lists of hits; NoLists
 //   closest_kept(ray, rejection, options), any_kept             one ray whose caller rejects hits
 // and where it has kernels of calls with one ray
-//   kernels(options, rays)                   closest(ray, i) and any(ray, i) for so many rays one by one, of which each
-//                                            may skip a primitive; converts to false if options ask for more
-//   few_rays(rays, answers, count, options)  FewRays; false if the batch is better traced as one
+//   kernels(options, rays, are_default)      closest(ray, i) and any(ray, i) for so many rays one by one, of which each
+//                                            may skip a primitive; converts to false if options ask for more.
+//                                            are_default: as are_defaults() of the options. Batches from batch_size()
+//                                            rays on are better traced as one, and so are FewRays that it does not take
 //   kept_at_once()                           KeptCalls by default options; may be missing
 template <class Tree>
 class RayDoor;
 
-// A batch of few rays, if it is to go as a loop of calls. Inline, which saves a batch of one 32 instructions.
-template <class Door, class AnyRay, class Answer, class Options>
+// A batch of few rays, if it is to go as a loop of calls.
+template <bool are_default, class Door, class AnyRay, class Answer, class Options>
 [[gnu::always_inline]] inline bool answer_few(const Door& door, const RayRecords<AnyRay>& rays,
                                               Answer* answers, std::size_t count, const Options& options) {
+  const auto kernels = door.kernels(options, rays.count, are_default);
+  if (!kernels) return false;
+  const FewRays<AnyRay, Answer> few(rays, answers, count, options, are_default, kernels.batch_size());
+  if (!few || !kernels.takes(few)) return false;
+  few.trace([&](const AnyRay& ray, std::size_t i) {
+    if constexpr (std::is_same_v<Answer, std::uint8_t>)
+      return kernels.any(ray, i);
+    else
+      return kernels.closest(ray, i);
+  });
+  return true;
+}
+template <class Door, class AnyRay, class Answer, class Options>
+[[gnu::noinline]] bool answer_few_by(const Door& door, const RayRecords<AnyRay>& rays, Answer* answers,
+                                     std::size_t count, const Options& options) {
+  return answer_few<false>(door, rays, answers, count, options);
+}
+// Default options go inline, and keep few of the others' numbers: a batch of one saves 60 instructions.
+template <class Door, class AnyRay, class Answer, class Options>
+[[gnu::always_inline]] inline bool answer_any_few(const Door& door, const RayRecords<AnyRay>& rays,
+                                                  Answer* answers, std::size_t count,
+                                                  const Options& options) {
   if constexpr (requires { door.kernels(options, 1); }) {
-    const FewRays<AnyRay, Answer> few = door.few_rays(rays, answers, count, options);
-    if (!few) return false;
-    const auto kernels = door.kernels(options, rays.count);
-    if (!kernels) return false;
-    few.trace([&](const AnyRay& ray, std::size_t i) {
-      if constexpr (std::is_same_v<Answer, std::uint8_t>)
-        return kernels.any(ray, i);
-      else
-        return kernels.closest(ray, i);
-    });
-    return true;
+    if (are_defaults(options)) [[likely]]
+      return answer_few<true>(door, rays, answers, count, options);
+    return answer_few_by(door, rays, answers, count, options);
   }
   return false;
 }
@@ -71,7 +86,7 @@ bool RayQueries<Tree>::occluded(const Ray& ray, const Options& options) const {
 template <class Tree>
 void RayQueries<Tree>::closest(Rays rays, Hits hits, const Options& options) const {
   const RayDoor<Tree> door(self());
-  if (answer_few(door, rays, HitSink<Hit>{hits}.in_place(), hits.count, options)) return;
+  if (answer_any_few(door, rays, HitSink<Hit>{hits}.in_place(), hits.count, options)) return;
   door.trace(source_of(rays, options), hits, options);
 }
 template <class Tree>
@@ -81,7 +96,7 @@ void RayQueries<Tree>::closest(const Columns& rays, Hits hits, const Options& op
 template <class Tree>
 void RayQueries<Tree>::occluded(Rays rays, Occluded occluded, const Options& options) const {
   const RayDoor<Tree> door(self());
-  if (answer_few(door, rays, occluded.data(), occluded.size(), options)) return;
+  if (answer_any_few(door, rays, occluded.data(), occluded.size(), options)) return;
   door.trace(source_of(rays, options), occluded, options);
 }
 template <class Tree>

@@ -85,18 +85,23 @@ bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& r
 // several.
 class KernelsOfScene {
  public:
-  KernelsOfScene(const SceneParts& scene, const TraceOptions& options, std::size_t rays)
+  KernelsOfScene(const SceneParts& scene, const TraceOptions& options, std::size_t rays, bool are_default)
       : scene_(scene), options_(options), tree_(quick_tree(scene, options.mask)) {
+    if (tree_ == nullptr && (options.test != TriangleTest::exact || !is_walked(scene))) return;
+    rows_.usual = are_default ? &default_row() : usual_row(options);
     if (tree_ == nullptr) {
-      if (options.test != TriangleTest::exact || !is_walked(scene)) return;
-      if ((rows_.usual = usual_row(options)) != nullptr) path_ = &checked_path(options.path);
+      if (rows_.usual != nullptr) path_ = &checked_path(options.path);
       return;
     }
-    rows_.usual = usual_row(options);
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
     if (rows_.usual == nullptr && !names_no_instance) rows_.chosen = ruled_row(options, rays);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
+  std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
+  template <class Answer>
+  bool takes(const FewRays<Ray, Answer>& few) const {
+    return tree_ != nullptr ? !few.may_be_packet() : !scene_.has_others();
+  }
   SceneHit closest(const Ray& ray, std::size_t i) const {
     if (tree_ == nullptr) return walked_closest(scene_, *path_, ray, options_.mask);
     const Hit hit = rows_.closest(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
@@ -166,16 +171,8 @@ class RayDoor<Scene> {
     return is_walked(parts_) ? walked_occluded(parts_, path_in_use(), default_row(), ray, ~0u)
                              : any_by(ray, {});
   }
-  KernelsOfScene kernels(const TraceOptions& options, std::size_t rays) const {
-    return {parts_, options, rays};
-  }
-  template <class Answer>
-  FewRays<Ray, Answer> few_rays(const RayView& rays, Answer* answers, std::size_t count,
-                                const TraceOptions& options) const {
-    const CommonTree* const tree = quick_tree(parts_, options.mask);
-    FewRays few(rays, answers, count, options, tree != nullptr ? batch_size_of(*tree->view) : min_list);
-    if (few && (tree == nullptr ? parts_.has_others() : few.may_be_packet())) few = {};
-    return few;
+  KernelsOfScene kernels(const TraceOptions& options, std::size_t rays, bool are_default = false) const {
+    return {parts_, options, rays, are_default};
   }
   [[gnu::cold, gnu::noinline]] SceneHit closest_by(const Ray& ray, const TraceOptions& options) const {
     require_skip(name, options.skip, 1);

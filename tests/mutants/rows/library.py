@@ -18,6 +18,7 @@ MUTANTS = [
         ('few rays: among their answers', 'are_apart(rays_, size_', 'are_apart(nullptr, size_'),
         ('few rays: skips are written over', 'if (skip.count != size_ ', 'if (skip.count == size_) return true;\n'
          '    if (skip.count != size_ '),
+        ('few rays: options are taken for the defaults', 'return some == 0 &&', 'return'),
         ('few rays: progress is not told', 'options.progress == nullptr', 'true'),
         ('few rays: fewer answers', 'count == size_', 'count <= size_'), source='accel/queries/nearest.cpp'),
     *rows_of('accel/batch/ray_source.hpp', 'test_bvh',
