@@ -32,6 +32,7 @@ struct BvhDArrays : NodesOfMesh {
 
   DoubleTreeView view() const {
     DoubleTreeView view{{nodes.data(), nullptr, live_root(), bounds}, halves.data(), frame, mesh_bounds};
+    view.tree.streams_from = streams_from;
     view.tree.rays_wait = rays_wait && view.tree.root != empty_reference;
     return view;
   }

@@ -9,22 +9,26 @@
 namespace raylanes {
 namespace {
 
-// Streams take less time from about so many rays on.
-constexpr std::size_t min_streamed_rays = 4096;
+// Streams take less time from about so many rays on, in trees whose visited boxes most rays share and in the rest.
+constexpr std::size_t min_streamed_in_shared = 1024, min_streamed_in_rest = 4096;
+std::size_t min_streamed_rays(const DoubleTreeView& tree) {
+  return tree.tree.streams_from.closest < min_streamed_in_shared ? min_streamed_in_shared
+                                                                 : min_streamed_in_rest;
+}
 
 // Rays that go through the tree together in streams: neighbours. Measured: other rays take 0.5 to 0.7 of the time of
 // streams if single ones fly. Rays from outside in all directions mostly hit one of the first things on their way: each
 // alone finds that sooner.
 bool should_stream(const DoubleTreeView& tree, std::span<const RayD> rays, bool may_fly, bool is_closest) {
-  if (rays.size() < min_streamed_rays) return false;
+  if (rays.size() < min_streamed_rays(tree)) return false;
   const bool are_sooner_singles =
       (may_fly && tree.tree.rays_wait) || (is_closest && begin_outside(rays, tree.bounds));
   return !are_sooner_singles || are_coherent(rays, tree.bounds);
 }
 
 // Parts of fewer rays than streams take are small.
-BatchPlan plan_of(const TraceOptionsD& options, std::size_t rays) {
-  if (rays < min_streamed_rays) return plan_of_singles(options.threads, nullptr, options.progress);
+BatchPlan plan_of(const DoubleTreeView& tree, const TraceOptionsD& options, std::size_t rays) {
+  if (rays < min_streamed_rays(tree)) return plan_of_singles(options.threads, nullptr, options.progress);
   BatchPlan plan{options.threads, nullptr};
   plan.progress = options.progress;
   return plan;
@@ -39,13 +43,17 @@ struct RowsOfPath {
   bool may_fly;
 };
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
+// Nearest hits of rays that mostly end at the root, as calls with one ray; false if most go on.
+bool trace_past(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
+  if (!pass_by(std::span(batch.rays, batch.size), tree.bounds)) return false;
+  for (std::size_t i = 0; i < batch.size; ++i)
+    batch.hits[i] = kernels.closest_of_ray(tree, batch.rays[i], batch.facing,
+                                           batch.skip != nullptr ? batch.skip[i] : no_primitive);
+  return true;
+}
 void run_apart(const RowsOfPath& rows, const DoubleTreeView& tree, const DoubleBatch& batch) {
   const bool is_closest = batch.hits != nullptr;
-  if (is_closest && pass_by(std::span(batch.rays, batch.size), tree.bounds)) {
-    for (std::size_t i = 0; i < batch.size; ++i)
-      batch.hits[i] = rows.kernels.closest_of_ray(tree, batch.rays[i], Facing::any, no_primitive);
-    return;
-  }
+  if (is_closest && trace_past(rows.kernels, tree, batch)) return;
   const Kernel single = is_closest ? rows.kernels.closest : rows.kernels.any,
                stream = is_closest ? rows.kernels.closest_stream : rows.kernels.any_stream;
   (should_stream(tree, {batch.rays, batch.size}, rows.may_fly, is_closest) ? stream : single)(tree, batch);
@@ -113,12 +121,13 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, co
   };
   if (rays.size() >= min_flying_batch && takes_all(options) && !has_after)
     return over_calls(
-        plan_of(options, rays.size()), rays, HitSink<HitD>{hits},
+        plan_of(tree, options, rays.size()), rays, HitSink<HitD>{hits},
         [&](std::size_t n) { return scratch_bytes(kernels, n); },
         [&](const RayCall<HitD, RayD>& call) { run_together(rows, tree, batch_of(call, nullptr), nullptr); });
-  trace_calls_after(plan_of(options, 0), rays, hits, options.after,
+  trace_calls_after(plan_of(tree, options, 0), rays, hits, options.after,
                     [&](const RayCall<HitD, RayD>& call, const HitD* after) {
-                      kernels.closest(tree, batch_of(call, after));
+                      const DoubleBatch batch = batch_of(call, after);
+                      if (after != nullptr || !trace_past(kernels, tree, batch)) kernels.closest(tree, batch);
                     });
 }
 
@@ -130,7 +139,7 @@ void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
   const bool together = rays.size() >= min_shared_point && takes_all(options);
   over_calls(
-      plan_of(options, together ? rays.size() : 0), rays, SpanSink<std::uint8_t>{occluded},
+      plan_of(tree, options, together ? rays.size() : 0), rays, SpanSink<std::uint8_t>{occluded},
       [&](std::size_t n) { return together ? scratch_bytes(kernels, n) : std::size_t{0}; },
       [&](const RayCall<std::uint8_t, RayD>& call) {
         DoubleBatch batch;

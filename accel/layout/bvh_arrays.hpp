@@ -18,7 +18,8 @@ struct NodesOfMesh {
   TreeReference root = empty_reference;
   Box bounds = empty_box;  // around the nodes
 
-  bool rays_wait = false;  // as in TreeView
+  StreamSizes streams_from;  // as in TreeView
+  bool rays_wait = false;    // as there
 
   // For trees that follow a mesh in motion.
   std::size_t mesh_triangles = 0;
@@ -50,8 +51,6 @@ void each_leaf_reference(Tree& tree, const Visit& visit) {
 
 // The arrays behind a TreeView of a mesh.
 struct BvhArrays : TreeLeaves, NodesOfMesh {
-  StreamSizes streams_from;
-
   TreeView view() const {
     TreeView view{nodes.data(), corners.blocks(), live_root(), bounds};
     view.streams_from = streams_from;

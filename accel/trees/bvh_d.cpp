@@ -35,7 +35,8 @@ BvhD::BvhD(VertexViewD vertices, IndexView triangles, const BuildOptions& option
     : BvhD(std::make_unique<BvhDArrays>(build_bvh_d(vertices, triangles, options))) {}
 BvhD::BvhD(std::unique_ptr<BvhDArrays> tree) noexcept : tree_(std::move(tree)) {
   const QuietFloats quiet;
-  tree_->rays_wait = do_rays_wait(shared_visits(*tree_), tree_->bytes());
+  const double shared = shared_visits(*tree_);
+  tree_->streams_from = streams_from(shared), tree_->rays_wait = do_rays_wait(shared, tree_->bytes());
   tree_->ready = tree_->view();
 }
 
