@@ -7,7 +7,7 @@
 namespace raylanes {
 
 template <>
-class PointDoor<BvhD> {
+class PointDoor<BvhD> : public PlacesBySurface<PointDoor<BvhD>, double> {
  public:
   explicit PointDoor(const BvhD& tree) : tree_(TreeAccess::arrays(tree)) {}
 

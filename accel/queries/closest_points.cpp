@@ -27,7 +27,7 @@ std::vector<Corners> triangles_of(const Leaves& leaves) {
 }  // namespace
 
 template <>
-class PointDoor<TriangleTree> {
+class PointDoor<TriangleTree> : public PlacesBySurface<PointDoor<TriangleTree>, float> {
  public:
   explicit PointDoor(const TriangleTree& tree) : tree_(tree), ready_(TreeAccess::ready(tree)) {}
 

@@ -152,21 +152,23 @@ void locate_points(const Surface<T>& surface, const VertexRecords<T>& points, st
   });
 }
 
+void require_accuracy(double accuracy) {
+  if (!(accuracy >= 0.0))
+    throw std::invalid_argument("winding_numbers: accuracy " + text_of(accuracy) +
+                                ", allowed are 0 and positive numbers");
+}
+
 template <class T>
 void find_winding_numbers(const Surface<T>& surface, const VertexRecords<T>& points, std::span<T> numbers,
                           const WindingOptions& given) {
   const CheckedPoints<T> call("winding_numbers", points, "numbers", numbers, given.active);
   WindingOptions options = given;
   options.active = call.active;
-  if (!(options.accuracy >= 0.0))
-    throw std::invalid_argument("winding_numbers: accuracy " + text_of(options.accuracy) +
-                                ", allowed are 0 and positive numbers");
+  require_accuracy(options.accuracy);
   const double accuracy_of_rounds[] = {options.accuracy};
-  each_winding("winding_numbers", surface, points, options, accuracy_of_rounds,
-               [&](std::size_t point, double number, const PointPlace&) {
-                 constexpr double least = 0x1p-100;  // modes may flush what is smaller
-                 numbers[point] = std::fabs(number) < least ? T(0) : static_cast<T>(number);
-               });
+  each_winding(
+      "winding_numbers", surface, points, options, accuracy_of_rounds,
+      [&](std::size_t point, double number, const PointPlace&) { numbers[point] = winding_of<T>(number); });
 }
 
 template void locate_points(const Surface<float>&, const VertexView&, std::span<Location>,

@@ -24,6 +24,14 @@ struct Surface {
 template <class T>
 void locate_points(const Surface<T>& surface, const VertexRecords<T>& points, std::span<Location> locations,
                    const LocateOptions& options);
+// A winding number as results have it: modes may flush what is smaller.
+template <class T>
+T winding_of(double number) {
+  constexpr double least = 0x1p-100;
+  return std::fabs(number) < least ? T(0) : static_cast<T>(number);
+}
+// Throws std::invalid_argument for an accuracy that WindingOptions does not allow.
+void require_accuracy(double accuracy);
 // As TriangleTree::winding_numbers().
 template <class T>
 void find_winding_numbers(const Surface<T>& surface, const VertexRecords<T>& points, std::span<T> numbers,

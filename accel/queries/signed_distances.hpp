@@ -12,16 +12,17 @@ namespace raylanes {
 // Points at a time, for buffers of 4 to 9 MB; a multiple of 8 for the bytes of a mask.
 inline constexpr std::size_t max_distances_at_once = std::size_t{1} << 17;
 
-inline double distance_of(const ClosestPoint& closest) {
-  return std::sqrt(closest.distance_squared);
-}
-inline double distance_of(const ClosestPointD& closest) {
-  return closest.distance;
+template <class Closest>
+double distance_of(const Closest& closest) {
+  if constexpr (requires { closest.distance; })
+    return closest.distance;
+  else
+    return std::sqrt(closest.distance_squared);
 }
 
 // Neither 0 nor infinite where the answer must not be, whatever the roundings; nor flushed.
-template <class T>
-T signed_distance(const ClosestPointOf<T>& closest, Location location) {
+template <class T, class Closest>
+T signed_distance(const Closest& closest, Location location) {
   using Number = std::numeric_limits<T>;
   if (location == Location::on) return 0;
   const T distance =
@@ -30,14 +31,14 @@ T signed_distance(const ClosestPointOf<T>& closest, Location location) {
   return location == Location::inside ? -distance : distance;
 }
 
-// As TriangleTree::signed_distances(): locate(points, locations, active, progress) and find(points, closest, active,
-// progress) are the tree's, with the options.
-template <class T, class Locate, class Find>
+// As PointQueries::signed_distances(): locate(points, locations, active, progress) and find(points, closest, active,
+// progress) are the object's, with the options.
+template <class Closest, class T, class Locate, class Find>
 void signed_distances_of(const VertexRecords<T>& points, std::span<T> distances, LaneBits given,
                          const Progress* progress, const Locate& locate, const Find& find) {
   const CheckedPoints<T> call("signed_distances", points, "distances", distances, given);
   const LaneBits active = call.active;
-  std::vector<ClosestPointOf<T>> closest(std::min(max_distances_at_once, points.count));
+  std::vector<Closest> closest(std::min(max_distances_at_once, points.count));
   std::vector<Location> locations(closest.size());
   std::size_t first = 0;
   do {  // options and view are checked even where there are no points

@@ -45,6 +45,11 @@ class Geometry {
   virtual void put_corners(float*) const {}
   virtual BuildOptions build_options() const { return {}; }
   virtual bool has_tree() const { return true; }
+  // The corners of a triangle of a mesh without a tree; false if there is none of this number, or a tree.
+  virtual bool find_corners(std::uint32_t, Triangle&) const { return false; }
+  // The volume that its triangles enclose, as Scene::containing_parts() says, without the transform. Any thread may
+  // call it.
+  double volume() const;
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
@@ -59,6 +64,12 @@ class Geometry {
 
   // Whether a copy of the scene has it, too. Then nothing changes it: a refit makes another geometry.
   std::atomic<bool> is_shared{false};
+
+ protected:
+  void forget_volume() { volume_ = -1.0; }
+
+ private:
+  mutable std::atomic<double> volume_{-1.0};  // negative: not known yet
 };
 
 std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree);

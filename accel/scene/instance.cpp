@@ -32,16 +32,9 @@ double invert(const Transform& transform, double (&inverse)[13]) {
   return 0x1p-50 * (size / std::abs(determinant)) + 0x1p-49;
 }
 
-constexpr double largest_float = std::numeric_limits<float>::max();
-
-// A conversion of a double beyond the largest float is undefined.
-float float_or_infinity(double x) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  return x > largest_float ? infinity : x < -largest_float ? -infinity : static_cast<float>(x);
-}
 // For paddings, which are multiplied by coordinates that may be zero.
 float float_at_most(double x) {
-  return static_cast<float>(std::min(x, largest_float));
+  return static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
 }
 
 }  // namespace

@@ -23,6 +23,39 @@ struct Instance : PlacedTree {
   Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_);
 };
 
+// A conversion of a double beyond the largest float is undefined.
+inline float float_or_infinity(double x) {
+  constexpr double largest_float = std::numeric_limits<float>::max();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  return x > largest_float ? infinity : x < -largest_float ? -infinity : static_cast<float>(x);
+}
+// A point of a part in the scene.
+inline Double3 moved_to_scene(const Transform& transform, const Float3& point) {
+  Double3 moved;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float(&row)[4] = transform.row[i];
+    const auto product = [&](std::size_t k) { return double{row[k]} * double{point[k]}; };
+    moved[i] = ((product(0) + product(1)) + product(2)) + double{row[3]};
+  }
+  return moved;
+}
+inline Float3 in_scene_as_floats(const Instance& instance, const Float3& point) {
+  if (instance.is_identity) return point;
+  const Double3 moved = moved_to_scene(instance.transform, point);
+  return {float_or_infinity(moved[0]), float_or_infinity(moved[1]), float_or_infinity(moved[2])};
+}
+// A point of the scene in the space of an instance, as kernels map the origins of rays.
+inline Float3 in_part(const Instance& instance, const Float3& point) {
+  if (instance.is_identity) return point;
+  Float3 mapped;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double* const row = instance.inverse + i;
+    mapped[i] = float_or_infinity(
+        ((row[0] * double{point[0]} + row[3] * double{point[1]}) + row[6] * double{point[2]}) + row[9]);
+  }
+  return mapped;
+}
+
 // The padding of boxes: a share of the largest coordinate of a ray's origin, and a distance.
 struct BoxPadding {
   float share = 0.0f, distance = 0.0f;

@@ -97,6 +97,11 @@ class MeshGeometry : public TriangleGeometry {
       for (const std::uint32_t corner : triangle)
         corners = std::copy(vertices_[corner].begin(), vertices_[corner].end(), corners);
   }
+  bool find_corners(std::uint32_t primitive, Triangle& triangle) const override {
+    if (has_tree() || primitive >= triangles_.size()) return false;
+    for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = vertices_[triangles_[primitive][k]];
+    return true;
+  }
   BuildOptions build_options() const override { return options_; }
   bool has_tree() const override { return tree_ != nullptr; }
   std::unique_ptr<Geometry> refit(VertexView vertices, IndexView triangles, int threads) override {
@@ -123,6 +128,7 @@ std::unique_ptr<Geometry> triangles_of(Bvh tree) {
 
 std::unique_ptr<Geometry> TreeGeometry::refit(VertexView vertices, IndexView triangles, int threads) {
   if (own == nullptr || is_shared) return triangles_of(tree->refitted(vertices, triangles, threads));
+  forget_volume();
   own->refit(vertices, triangles, threads);
   return nullptr;
 }

@@ -74,6 +74,7 @@ struct QueryTypes<BvhD> {
   using Hit = HitD;
   using Options = TraceOptionsD;
   using Crossing = CrossingD;
+  using ClosestPoint = ClosestPointD;
   using ClosestOptions = ClosestPointOptionsD;
   using DistanceOptions = SignedDistanceOptionsD;
   using View = DoubleTreeView;

@@ -22,7 +22,8 @@ struct Path;  // <raylanes/paths.hpp>
 
 namespace detail {
 
-// The types of a class with queries: Number, Hit and Options; Crossing, ClosestOptions, DistanceOptions for such calls.
+// The types of a class with queries: Number, Hit, Options; Crossing, ClosestPoint, ClosestOptions, DistanceOptions for
+// such calls.
 template <class Tree>
 struct QueryTypes;
 
@@ -133,12 +134,13 @@ enum class InsideRule : std::uint8_t {
 /// The names of the rules, by enumerator.
 inline constexpr std::array<std::string_view, 4> inside_rule_names{"parity", "nonzero", "vote", "winding"};
 
-/// Options of locate().
+/// Options of locate(), and of Scene::innermost_parts() and Scene::containing_parts().
 struct LocateOptions {
   InsideRule rule = InsideRule::parity;  ///< when a point counts as inside
   const Path* path = nullptr;            ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
+  std::uint32_t mask = ~0u;           ///< of instances of a scene, as in TraceOptions
   TraceCounters* counters = nullptr;  ///< as in TraceOptions
   /// If not null, called between parts, as Progress says; if it throws, any locations may be written.
   const Progress* progress = nullptr;
@@ -152,6 +154,7 @@ struct WindingOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
+  std::uint32_t mask = ~0u;           ///< of instances of a scene, as in TraceOptions
   TraceCounters* counters = nullptr;  ///< as in TraceOptions, of the points' rays
   /// If not null, called between parts, as Progress says; if it throws, any numbers may be written.
   const Progress* progress = nullptr;
@@ -166,6 +169,7 @@ struct SignedDistanceOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;          ///< the active points; null: all
+  std::uint32_t mask = ~0u;           ///< of instances of a scene, as in TraceOptions
   TraceCounters* counters = nullptr;  ///< as in TraceOptions, of both searches
   /// If not null, called between parts, as Progress says; if it throws, any distances may be written.
   const Progress* progress = nullptr;

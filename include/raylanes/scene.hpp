@@ -51,6 +51,18 @@ struct SceneCrossing : Crossing {
   bool operator==(const SceneCrossing&) const = default;
 };
 
+/// An instance that contains a point; of none, by default.
+struct ContainingPart {
+  std::uint32_t geometry = no_part;
+  std::uint32_t instance = no_part;
+  Location location =
+      Location::outside;  ///< inside the instance, or on its surface; outside: there is no instance
+
+  /// Returns whether there is an instance.
+  explicit operator bool() const { return instance != no_part; }
+  bool operator==(const ContainingPart&) const = default;
+};
+
 class Scene;
 namespace detail {
 template <>
@@ -59,6 +71,9 @@ struct QueryTypes<Scene> {
   using Hit = SceneHit;
   using Options = TraceOptions;
   using Crossing = SceneCrossing;
+  using ClosestPoint = SceneClosestPoint;
+  using ClosestOptions = ClosestPointOptions;
+  using DistanceOptions = SignedDistanceOptions;
 };
 }  // namespace detail
 
@@ -101,7 +116,7 @@ struct QueryTypes<Scene> {
 /// Common trees take the memory of a Bvh of their triangles, besides geometries. These need no trees of their own if
 /// they are added as vertices and triangles. The build takes 48 bytes a triangle more, and uses the builder of the
 /// largest geometry in the tree.
-class Scene : public SurfaceQueries<Scene> {
+class Scene : public SurfaceQueries<Scene>, public PointQueries<Scene> {
  public:
   /// Makes an empty scene.
   Scene();
@@ -122,8 +137,9 @@ class Scene : public SurfaceQueries<Scene> {
   /// Adds a mesh, which the scene copies, and whose tree is built when it is first needed; returns the index of the
   /// geometry. Instances in common trees need none, so nothing is built or stored twice: a mesh takes 12 bytes a
   /// vertex and 12 a triangle. update() builds the trees of the other instances. Otherwise the first call that needs
-  /// the tree builds it on one thread: tree(), save(), normals(), closest_crossing(), set_mask() and queries after it.
-  /// Many threads may make that call at the same time. Throws as the constructor of Bvh does.
+  /// the tree builds it on one thread: tree(), save(), closest_crossing(), set_mask() and queries after it; and
+  /// locate() and its kind for points within the mesh's box. Many threads may make that call at the same time. Throws
+  /// as the constructor of Bvh does.
   std::uint32_t add(VertexView vertices, IndexView triangles, const BuildOptions& options = {});
   /// Adds a mesh as its vertices and triangles.
   std::uint32_t add(const Mesh& mesh, const BuildOptions& options = {}) {
@@ -218,10 +234,33 @@ class Scene : public SurfaceQueries<Scene> {
   /// Computes the unit normal in the scene of each hit: normals[i] belongs to hits[i], hits in scenes or records that
   /// name an instance and a primitive. It is normal_in_scene() of <raylanes/surface.hpp> for the
   /// unit_normal() of the triangle; NaN for misses and hits that name no triangle. `threads` is as in TraceOptions.
-  /// Each call visits all leaves of the geometries that are hit. Throws std::invalid_argument, before writing anything,
-  /// if there are not as many normals as hits, hits name no instances or a view points to nothing, or the thread count
-  /// is negative.
+  /// Each call visits all leaves of the geometries that are hit, but of meshes that were added without a tree none.
+  /// Throws std::invalid_argument, before writing anything, if there are not as many normals as hits, hits name no
+  /// instances or a view points to nothing, or the thread count is negative.
   void normals(PrimitiveView hits, std::span<Float3> normals, int threads = 1) const;
+  /// Writes the corners in the scene of the triangle of each hit: triangles[i] belongs to hits[i], which may be closest
+  /// points, too. They are computed in doubles as SceneClosestPoint says, and rounded once to floats. Corners are NaN
+  /// for misses and hits that name no triangle. Otherwise as normals().
+  void corners(PrimitiveView hits, std::span<Triangle> triangles, int threads = 1) const;
+
+  // Points: closest_points(), locate(), winding_numbers() and signed_distances() as PointQueries says; and which part.
+  // An instance contains a point that is inside it or on its surface, as locate() of its geometry says in its space.
+
+  /// Finds the innermost instance that contains each point: parts[i] belongs to points[i], and is no part for points
+  /// that no instance contains. It is the first one of containing_parts().
+  /// Inactive points leave their part unchanged. Throws as locate() does, and std::invalid_argument if there are not as
+  /// many parts as points, or they overlap.
+  void innermost_parts(Points points, std::span<ContainingPart> parts,
+                       const LocateOptions& options = {}) const;
+  /// Returns the instances that contain each point, innermost first: in the order of their volumes, then of instances.
+  /// So a solid within another one comes before it, and where solids overlap the smaller one comes first. A point on
+  /// a face that neighbours share is on the surface of both. The order of two instances is the same at all points.
+  /// The volume of a geometry is the size of the sum of v0 · (v1 × v2) / 6 over its triangles, from the middle of their
+  /// box. The volume of an instance is that times the size of the transform's determinant. The first call that needs it
+  /// computes it, in doubles, in the order of primitives, with the lost digits of each sum: the same bits everywhere.
+  /// Meshes that are not closed, or whose normals do not agree, have a volume, too, but it means little.
+  /// Inactive points have empty lists. Throws as locate() does.
+  RayLists<ContainingPart> containing_parts(Points points, const LocateOptions& options = {}) const;
 
   /// Writes the scene as bytes, from which load() makes a scene with the same hits on any machine. docs/tree_file.md
   /// has the format. Throws std::invalid_argument if a geometry has primitives of your own, which no file can hold, and

@@ -81,6 +81,7 @@ struct ClosestPointOptions {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;  ///< the active points of a batch; null: all
+  std::uint32_t mask = ~0u;   ///< of instances of a scene, as in TraceOptions
   /// If not null, nodes, leaves, box_tests and triangle_tests are added here. They depend on the tree, the points,
   /// their order, the number of threads and the ISA path.
   TraceCounters* counters = nullptr;
@@ -98,6 +99,7 @@ struct QueryTypes<TriangleTree> {
   using Hit = raylanes::Hit;
   using Options = TraceOptions;
   using Crossing = raylanes::Crossing;
+  using ClosestPoint = raylanes::ClosestPoint;
   using ClosestOptions = ClosestPointOptions;
   using DistanceOptions = SignedDistanceOptions;
   using View = TreeView;

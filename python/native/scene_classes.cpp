@@ -64,6 +64,44 @@ void shadows_in_scene(const SharedScene& shared, const Float3& from, const py::a
       });
 }
 
+// The innermost part of each point.
+void innermost_parts(const SharedScene& shared, const py::array& points, const py::array& parts,
+                     const char* rule, const char* path, int threads, const py::object& active,
+                     const py::object& progress, std::uint32_t mask) {
+  const auto from = vertices_of<float>(points);
+  const auto to = span_of<ContainingPart>(parts);
+  auto options = plain_options<LocateOptions>(path, threads, active, from.count);
+  options.rule = named<InsideRule>("rule", inside_rule_names, rule), options.mask = mask;
+  query(shared, options, progress, from.count,
+        [&](const Scene& scene, const LocateOptions& heard) { scene.innermost_parts(from, to, heard); });
+}
+// Offsets and parts, as bytes.
+py::tuple containing_parts(const SharedScene& shared, const py::array& points, const char* rule,
+                           const char* path, int threads, const py::object& active,
+                           const py::object& progress, std::uint32_t mask) {
+  const auto from = vertices_of<float>(points);
+  auto options = plain_options<LocateOptions>(path, threads, active, from.count);
+  options.rule = named<InsideRule>("rule", inside_rule_names, rule), options.mask = mask;
+  auto found = query(
+      shared, options, progress, from.count,
+      [&](const Scene& scene, const LocateOptions& heard) { return scene.containing_parts(from, heard); });
+  return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
+}
+
+// Rows of a primitive and an instance each.
+void corners_in_scene(const SharedScene& shared, const py::array& hits, const py::array& corners) {
+  const PrimitiveView names = skips_of(hits);
+  const std::span triangles(reinterpret_cast<Triangle*>(span_of<float>(corners).data()), names.count);
+  query(shared, [&](const Scene& scene) { scene.corners(names, triangles); });
+}
+void normals_in_scene(const SharedScene& shared, const py::array& hits, const py::array& normals,
+                      int threads) {
+  const PrimitiveView names = skips_of(hits);
+  const std::span to(reinterpret_cast<Float3*>(span_of<float>(normals).data()), names.count);
+  threads = usable_threads(threads);
+  query(shared, [&](const Scene& scene) { scene.normals(names, to, threads); });
+}
+
 // As _scene_queries.py has it.
 struct InstanceRecord {
   std::uint32_t geometry, mask;
@@ -160,6 +198,14 @@ void bind_scenes(py::module_& module) {
       .def("crossings", lists<SharedScene, crossings_of_rays, Mask>)
       .def("stretches", lists<SharedScene, within, Mask>)
       .def("count_crossings", count_crossings<SharedScene, Mask>)
+      .def("closest_points", closest_points<SharedScene, Mask>)
+      .def("locate", locate<SharedScene, Mask>)
+      .def("winding_numbers", winding_numbers<SharedScene, Mask>)
+      .def("signed_distances", signed_distances<SharedScene, Mask>)
+      .def("innermost_parts", innermost_parts)
+      .def("containing_parts", containing_parts)
+      .def("corners", corners_in_scene)
+      .def("normals", normals_in_scene)
       .def("bounds", [](const SharedScene& shared) { return corners_of(shared.state->bounds()); })
       .def("nbytes", [](const SharedScene& shared) { return to_python(shared.state->bytes()); })
       .def("to_bytes", to_bytes<SharedScene>)

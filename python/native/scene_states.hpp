@@ -12,6 +12,7 @@ namespace raylanes::python {
 struct SharedScene {
   using Object = Scene;
   using Number = float;
+  using ClosestPoint = SceneClosestPoint;
   explicit SharedScene(Scene&& scene) : state(std::make_shared<Scene>(std::move(scene))) {}
   std::shared_ptr<Scene> state;
 };

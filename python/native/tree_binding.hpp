@@ -22,6 +22,7 @@ namespace raylanes::python {
 template <class T>
 struct SharedTree {
   using Number = T;
+  using ClosestPoint = ClosestPointOf<T>;
   std::shared_ptr<TreeOf<T>> state;
   std::size_t left_out = 0;       // triangles that the build left out
   bool looked_for_holes = false;  // see found_holes()
@@ -252,54 +253,61 @@ void count_crossings(const Shared& shared, const py::object& rays, const py::arr
         [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }
 
-template <class T>
-void locate(const SharedTree<T>& shared, const py::array& points, const py::array& locations,
-            const char* rule, const char* path, int threads, const py::object& active,
-            const py::object& progress) {
-  const auto from = vertices_of<T>(points);
+// Calls with points. Mask: that of a query of scenes, or nothing.
+template <class Shared, class... Mask>
+void locate(const Shared& shared, const py::array& points, const py::array& locations, const char* rule,
+            const char* path, int threads, const py::object& active, const py::object& progress,
+            Mask... mask) {
+  const auto from = vertices_of<typename Shared::Number>(points);
   const auto bytes = span_of<std::uint8_t>(locations);
   const std::span<Location> to(reinterpret_cast<Location*>(bytes.data()), bytes.size());
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
+  ((options.mask = mask), ...);
   query(shared, options, progress, from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.locate(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.locate(from, to, heard); });
 }
 
-template <class T>
-void winding_numbers(const SharedTree<T>& shared, const py::array& points, const py::array& numbers,
-                     double accuracy, const char* path, int threads, const py::object& active,
-                     const py::object& progress) {
-  const auto from = vertices_of<T>(points);
-  const auto to = span_of<T>(numbers);
+template <class Shared, class... Mask>
+void winding_numbers(const Shared& shared, const py::array& points, const py::array& numbers, double accuracy,
+                     const char* path, int threads, const py::object& active, const py::object& progress,
+                     Mask... mask) {
+  const auto from = vertices_of<typename Shared::Number>(points);
+  const auto to = span_of<typename Shared::Number>(numbers);
   auto options = plain_options<WindingOptions>(path, threads, active, from.count);
   options.accuracy = accuracy;
+  ((options.mask = mask), ...);
   query(shared, options, progress, from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.winding_numbers(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.winding_numbers(from, to, heard); });
 }
 
-template <class T>
-void closest_points(const SharedTree<T>& shared, const py::array& points, const py::array& answers,
-                    T max_distance, const char* path, int threads, const py::object& active,
-                    const py::object& progress) {
-  const auto from = vertices_of<T>(points);
-  const auto to = span_of<ClosestPointOf<T>>(answers);
-  auto options = plain_options<typename CallTypesOf<T>::ClosestOptions>(path, threads, active, from.count);
+template <class Shared, class... Mask>
+void closest_points(const Shared& shared, const py::array& points, const py::array& answers,
+                    typename Shared::Number max_distance, const char* path, int threads,
+                    const py::object& active, const py::object& progress, Mask... mask) {
+  const auto from = vertices_of<typename Shared::Number>(points);
+  const auto to = span_of<typename Shared::ClosestPoint>(answers);
+  auto options = plain_options<typename CallTypesOf<typename Shared::Number>::ClosestOptions>(
+      path, threads, active, from.count);
   options.max_distance = max_distance;
+  ((options.mask = mask), ...);
   query(shared, options, progress, from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_points(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.closest_points(from, to, heard); });
 }
 
-template <class T>
-void signed_distances(const SharedTree<T>& shared, const py::array& points, const py::array& distances,
-                      const char* rule, T max_distance, const char* path, int threads,
-                      const py::object& active, const py::object& progress) {
-  const auto from = vertices_of<T>(points);
-  const auto to = span_of<T>(distances);
-  auto options = plain_options<typename CallTypesOf<T>::DistanceOptions>(path, threads, active, from.count);
+template <class Shared, class... Mask>
+void signed_distances(const Shared& shared, const py::array& points, const py::array& distances,
+                      const char* rule, typename Shared::Number max_distance, const char* path, int threads,
+                      const py::object& active, const py::object& progress, Mask... mask) {
+  const auto from = vertices_of<typename Shared::Number>(points);
+  const auto to = span_of<typename Shared::Number>(distances);
+  auto options = plain_options<typename CallTypesOf<typename Shared::Number>::DistanceOptions>(
+      path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;
+  ((options.mask = mask), ...);
   query(shared, options, progress, from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.signed_distances(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.signed_distances(from, to, heard); });
 }
 
 }  // namespace raylanes::python

@@ -47,10 +47,10 @@ void bind_queries(py::module_& module, const char* name) {
       .def("crossings", lists<SharedTree<T>, crossings_of_rays>)
       .def("stretches", lists<SharedTree<T>, within>)
       .def("count_crossings", count_crossings<SharedTree<T>>)
-      .def("locate", locate<T>)
-      .def("winding_numbers", winding_numbers<T>)
-      .def("closest_points", closest_points<T>)
-      .def("signed_distances", signed_distances<T>)
+      .def("locate", locate<SharedTree<T>>)
+      .def("winding_numbers", winding_numbers<SharedTree<T>>)
+      .def("closest_points", closest_points<SharedTree<T>>)
+      .def("signed_distances", signed_distances<SharedTree<T>>)
       .def("bounds", [](const SharedTree<T>& shared) {
         const auto box = query(shared, [](const TreeOf<T>& tree) { return tree.bounds(); });
         return py::make_tuple(box.lo, box.hi);

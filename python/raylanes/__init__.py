@@ -14,11 +14,11 @@ Wrong types raise TypeError, wrong shapes and values raise ValueError, as in Num
 NumPy, no thread may write to an array while a call reads it.
 """
 
-from ._arrays import (closest_point_dtype, count_dtype, crossing_dtype, double_closest_point_dtype,
-                      double_crossing_dtype, double_hit_dtype, double_ray_dtype, double_stretch_dtype,
-                      faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays, scene_crossing_dtype,
-                      scene_hit_dtype, scene_stretch_dtype, stand_ins as _stand_ins, stretch_dtype,
-                      volume_of as _volume_of)
+from ._arrays import (closest_point_dtype, containing_part_dtype, count_dtype, crossing_dtype,
+                      double_closest_point_dtype, double_crossing_dtype, double_hit_dtype, double_ray_dtype,
+                      double_stretch_dtype, faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays,
+                      scene_closest_point_dtype, scene_crossing_dtype, scene_hit_dtype, scene_stretch_dtype, stand_ins
+                      as _stand_ins, stretch_dtype, volume_of as _volume_of)
 from ._meshes import MeshWarning, parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
@@ -27,18 +27,21 @@ from .hits import ClosestPoint, ClosestPoints, Crossing, Crossings, Hit, Hits, L
 from .paths import Path, active_path, paths, use_path
 from .roots import reciprocal, rsqrt, sqrt
 from .scene import Scene
-from .scene_hits import SceneCrossing, SceneCrossings, SceneHit, SceneHits, SceneStretch, SceneStretches
+from .scene_hits import (ContainingPart, ContainingParts, SceneClosestPoint, SceneClosestPoints, SceneCrossing,
+                         SceneCrossings, SceneHit, SceneHits, SceneStretch, SceneStretches)
 from .sphere_tree import SphereTree
 from .tree import Bvh, KdTree
 
 __all__ = [
-    "Bvh", "ClosestPoint", "ClosestPoints", "Crossing", "Crossings", "Hit", "Hits", "INSIDE", "KdTree", "Lists",
-    "MeshWarning", "ON", "OUTSIDE", "Path", "Scene", "SceneCrossing", "SceneCrossings", "SceneHit", "SceneHits",
-    "SceneStretch", "SceneStretches", "SphereTree", "Stretch", "Stretches",
-    "active_path", "closed_report", "closest_point_dtype", "count_dtype", "crossing_dtype",
+    "Bvh", "ClosestPoint", "ClosestPoints", "ContainingPart", "ContainingParts", "Crossing", "Crossings", "Hit", "Hits",
+    "INSIDE", "KdTree", "Lists", "MeshWarning", "ON", "OUTSIDE", "Path", "Scene", "SceneClosestPoint",
+    "SceneClosestPoints", "SceneCrossing", "SceneCrossings", "SceneHit", "SceneHits", "SceneStretch", "SceneStretches",
+    "SphereTree", "Stretch", "Stretches",
+    "active_path", "closed_report", "closest_point_dtype", "containing_part_dtype", "count_dtype", "crossing_dtype",
     "double_closest_point_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype",
-    "double_stretch_dtype", "hit_dtype", "no_part", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal",
-    "rsqrt", "scene_crossing_dtype", "scene_hit_dtype", "scene_stretch_dtype", "sqrt", "stretch_dtype", "use_path",
+    "double_stretch_dtype", "hit_dtype", "no_part", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt",
+    "scene_closest_point_dtype", "scene_crossing_dtype", "scene_hit_dtype", "scene_stretch_dtype", "sqrt",
+    "stretch_dtype", "use_path",
 ]
 
 

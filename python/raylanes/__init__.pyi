@@ -15,6 +15,8 @@ no_part: int
 ray_dtype: np.dtype[np.void]
 hit_dtype: np.dtype[np.void]
 scene_hit_dtype: np.dtype[np.void]
+scene_closest_point_dtype: np.dtype[np.void]
+containing_part_dtype: np.dtype[np.void]
 scene_crossing_dtype: np.dtype[np.void]
 scene_stretch_dtype: np.dtype[np.void]
 crossing_dtype: np.dtype[np.void]
@@ -56,7 +58,7 @@ _Accuracy = float | Literal["correctly_rounded", "1 ulp", "1ulp", "within_1_ulp"
                             "2^-44", "2^-22", "2^-16", "2^-11", "2^-4",
                             "within_2^-44", "within_2^-22", "within_2^-16", "within_2^-11", "within_2^-4"]
 _Self = TypeVar("_Self", bound=_Stored)
-_Items = TypeVar("_Items", Hits, Crossings, Stretches, SceneHits, SceneCrossings, SceneStretches)
+_Items = TypeVar("_Items", Hits, Crossings, Stretches, SceneHits, SceneCrossings, SceneStretches, ContainingParts)
 
 class _WithFaces(Protocol):
     @property
@@ -255,6 +257,38 @@ class ClosestPoint(_OnTriangle, _PlaceRecord):
     @property
     def point(self) -> _Floats: ...
 
+class SceneClosestPoints(ClosestPoints):
+    @property
+    def geometry(self) -> _Ids: ...
+    @property
+    def instance(self) -> _Ids: ...
+
+class SceneClosestPoint(ClosestPoint):
+    @property
+    def geometry(self) -> np.uint32: ...
+    @property
+    def instance(self) -> np.uint32: ...
+
+class ContainingParts(np.ndarray[Any, np.dtype[np.void]]):
+    @property
+    def geometry(self) -> _Ids: ...
+    @property
+    def instance(self) -> _Ids: ...
+    @property
+    def location(self) -> _Bytes: ...
+    @property
+    def found(self) -> _Bools: ...
+
+class ContainingPart(np.void):
+    @property
+    def geometry(self) -> np.uint32: ...
+    @property
+    def instance(self) -> np.uint32: ...
+    @property
+    def location(self) -> np.uint8: ...
+    @property
+    def found(self) -> np.bool_: ...
+
 class Lists(Generic[_Items]):
     offsets: NDArray[np.int64]
     items: _Items
@@ -434,6 +468,23 @@ class Scene(_Stored):
     def stretches(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
                   tmax: _Rays = ..., mask: int = ..., max_count: int | None = ..., skip: _Skip = ...,
                   active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> Lists[SceneStretches]: ...
+    def closest_points(self, points: ArrayLike, *, max_distance: float = ..., mask: int = ..., out: Any = ...,
+                       active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> SceneClosestPoints: ...
+    def locate(self, points: ArrayLike, *, rule: _Rule = ..., mask: int = ..., out: Any = ..., active: _Mask = ...,
+               threads: int = ..., progress: _Progress = ...) -> _Bytes: ...
+    def inside(self, points: ArrayLike, *, rule: _Rule = ..., mask: int = ..., threads: int = ...,
+               progress: _Progress = ...) -> _Bools: ...
+    def winding_numbers(self, points: ArrayLike, *, accuracy: float = ..., mask: int = ..., out: Any = ...,
+                        active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> _Floats: ...
+    def signed_distances(self, points: ArrayLike, *, rule: _Rule = ..., max_distance: float = ..., mask: int = ...,
+                         out: Any = ..., active: _Mask = ..., threads: int = ...,
+                         progress: _Progress = ...) -> _Floats: ...
+    def innermost_parts(self, points: ArrayLike, *, rule: _Rule = ..., mask: int = ..., out: Any = ...,
+                        active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> ContainingParts: ...
+    def containing_parts(self, points: ArrayLike, *, rule: _Rule = ..., mask: int = ..., active: _Mask = ...,
+                         threads: int = ..., progress: _Progress = ...) -> Lists[ContainingParts]: ...
+    def corners(self, hits: _Records) -> NDArray[np.float32]: ...
+    def normals(self, hits: _Records, *, threads: int = ...) -> NDArray[np.float32]: ...
     def count_crossings(self, rays: _Rays = ..., *, origins: _Rays = ..., directions: _Rays = ..., tmin: _Rays = ...,
                         tmax: _Rays = ..., mask: int = ..., facing: _Facing = ..., skip: _Skip = ..., out: Any = ...,
                         active: _Mask = ..., threads: int = ..., progress: _Progress = ...) -> _Records: ...

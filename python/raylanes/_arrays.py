@@ -60,6 +60,13 @@ double_closest_point_dtype = np.dtype({
     "formats": ["<f8", "<f8", ("<f8", 3), "<f8", "<f8", "<u4"], "itemsize": 64})
 """The closest point of a mesh of float64; otherwise as closest_point_dtype."""
 
+scene_closest_point_dtype = np.dtype([*closest_point_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
+"""The closest point of a scene: a closest_point_dtype in its space, and of what; no_part twice where there is none."""
+
+containing_part_dtype = np.dtype({"names": ["geometry", "instance", "location"], "formats": ["<u4", "<u4", "u1"],
+                                  "itemsize": 12})
+"""An instance that contains a point: INSIDE or ON its surface; of none no_part twice, OUTSIDE."""
+
 
 class Numbers(NamedTuple):
     """The types of a tree's coordinates and records."""

@@ -7,13 +7,14 @@ from ._arrays import count_of, faces_of, numbers, require_kept, unsigned, vertic
 from ._meshes import is_mesh, parts_of
 from ._places import Places
 from ._scalars import count, flag, threads_of
+from ._scene_points import ScenePoints
 from ._scene_queries import EVERY_BIT, SceneQueries
 from ._stored import Stored
 from .sphere_tree import SphereTree
 from .tree import Bvh
 
 
-class Scene(SceneQueries, Places, Stored):
+class Scene(SceneQueries, ScenePoints, Places, Stored):
     """Geometries, and instances that place them: trees of triangles and of spheres, each in any number of places.
 
     Geometries and instances are numbered from 0, in the order in which they are added. Call update() after any change

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ._arrays import no_part, no_primitive, numbers, scene_hit_dtype
-from .hits import Crossing, Crossings, HitNumbers, Hits, Records, Stretch, Stretches, field_of
+from .hits import (ClosestPoint, ClosestPoints, Crossing, Crossings, HitNumbers, Hits, Records, Stretch, Stretches,
+                   field_of)
 from .sphere_tree import SphereTree
 
 
@@ -149,6 +150,35 @@ class SceneStretches(_InScene, Stretches):
     """An array of scene_stretch_dtype; stretches[i] is a SceneStretch."""
 
     _record = SceneStretch
+
+
+class SceneClosestPoint(_InScene, ClosestPoint):
+    """A single closest point in a scene: points[i], with the properties of SceneClosestPoints."""
+
+
+class SceneClosestPoints(_InScene, ClosestPoints):
+    """An array of scene_closest_point_dtype; points[i] is a SceneClosestPoint, in the space of the scene."""
+
+    _record = SceneClosestPoint
+
+
+class _PartNumbers(_InScene):
+    location = field_of("location", "uint8: INSIDE, or ON the surface; OUTSIDE where no instance contains the point")
+
+    @property
+    def found(self):
+        """bool: whether an instance contains the point."""
+        return self.instance != no_part
+
+
+class ContainingPart(_PartNumbers, np.void):
+    """A single instance that contains a point: parts[i], with the properties of ContainingParts."""
+
+
+class ContainingParts(_PartNumbers, Records):
+    """An array of containing_part_dtype; parts[i] is a ContainingPart."""
+
+    _record = ContainingPart
 
 
 def _rows_of(hits):

@@ -7,6 +7,7 @@
 #include "../fuzz/fence.hpp"
 #include "../support/same_bytes.hpp"
 #include "fuzz_primitives.hpp"
+#include "points/placed_triangles.hpp"
 #include "scene_oracle.hpp"
 
 namespace raylanes::testing {
@@ -140,6 +141,59 @@ void expect_lists(const Scene& scene, const std::vector<Ray>& rays, const TraceO
       fail("all hits: ray " + std::to_string(i) + " on " + options.path->name);
 }
 
+// Points have the closest point of all triangles, one after the other, and the parts whose trees say so.
+void expect_points(Bytes& bytes, const Scene& scene, const std::vector<Ray>& rays,
+                   const TraceOptions& options) {
+  static Fence fence(max_rays * sizeof(SceneClosestPoint)), part_fence(max_rays * sizeof(ContainingPart));
+  const std::size_t n = rays.size();
+  std::vector<Float3> points;
+  for (const Ray& ray : rays) points.push_back(ray.origin);
+  const float most = bytes.chance(128) ? infinity : std::abs(rays[0].tmin);
+  const std::span<SceneClosestPoint> closest(fence.last<SceneClosestPoint>(n), n);
+  const std::span<ContainingPart> inner(part_fence.last<ContainingPart>(n), n);
+  const LocateOptions by{.rule = static_cast<InsideRule>(bytes.below(inside_rule_names.size())),
+                         .path = options.path,
+                         .threads = options.threads,
+                         .mask = options.mask};
+  scene.closest_points(
+      points, closest,
+      {.max_distance = most, .path = options.path, .threads = options.threads, .mask = options.mask});
+  scene.innermost_parts(points, inner, by);
+  fence.expect_intact("closest"), part_fence.expect_intact("parts");
+  const PlacedTriangles triangles(scene, options.mask);
+  const auto lists = scene.containing_parts(points, by);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!same_bytes(closest[i], triangles.one_by_one(points[i], most)))
+      fail("closest point " + std::to_string(i) + " on " + options.path->name);
+    if (inner[i] != (lists[i].empty() ? ContainingPart() : lists[i][0]))
+      fail("innermost part of point " + std::to_string(i) + " on " + options.path->name);
+    std::map<std::uint32_t, Location> found;
+    for (const ContainingPart& part : lists[i]) found[part.instance] = part.location;
+    for (std::uint32_t instance = 0; instance < scene.instance_count(); ++instance) {
+      if (!is_there(scene, instance, options.mask)) continue;
+      const Float3 mapped =
+          mapped_ray(make_ray(points[i], {1, 0, 0}),
+                     Instance(scene.geometry_of(instance), scene.transform_of(instance), ~0u))
+              .origin;
+      Location location;
+      scene.tree(scene.geometry_of(instance))
+          ->locate(std::span(&mapped, 1), std::span(&location, 1),
+                   {.rule = by.rule, .path = &paths().front()});
+      const Location here = found.contains(instance) ? found[instance] : Location::outside;
+      const bool is_certain =  // in open meshes other rules ask neighbours
+          location == Location::on || here == Location::on || by.rule == InsideRule::vote;
+      if (is_certain && here != location)
+        fail("part " + std::to_string(instance) + " of point " + std::to_string(i) + " on " +
+             options.path->name);
+    }
+  }
+  std::vector<float> numbers(n);
+  scene.signed_distances(points, numbers, {.rule = by.rule, .path = by.path, .mask = by.mask});
+  scene.winding_numbers(points, numbers, {.path = by.path, .threads = by.threads, .mask = by.mask});
+  std::vector<Triangle> corners(n);
+  scene.corners(PrimitiveView(closest), corners);
+}
+
 // Through a file, once with a damage that must be found.
 Scene loaded_again(Bytes& bytes, Scene scene) {
   std::stringstream file, damaged;
@@ -259,6 +313,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (bytes.chance(64)) expect_closest_crossings(scene, rays, options);
   if (bytes.chance(32)) expect_lists(scene, rays, options);
   if (bytes.chance(16)) expect_stretches(scene, rays, options);
+  if (!rays.empty() && bytes.chance(64)) expect_points(bytes, scene, rays, options);
   if (bytes.chance(64))
     expect_others(bytes, scene, rays, {.mode = options.mode, .path = options.path, .mask = options.mask});
   if (!rays.empty() && bytes.chance(64)) rays = from_one_origin(bytes, rays);

@@ -38,6 +38,7 @@ CommonTree::CommonTree(const CommonTree& other)
       view(other.view),
       members(other.members),
       slots(other.slots),
+      boxes(other.boxes),
       shift(other.shift),
       mask(other.mask),
       triangles(other.triangles),
@@ -55,7 +56,7 @@ void CommonTree::strike(Member& member) noexcept {
 }
 
 std::size_t CommonTree::bytes() const {
-  return members.size() * sizeof(Member) + slots.size() * sizeof(TriangleOwner) +
+  return members.size() * sizeof(Member) + slots.size() * sizeof(TriangleOwner) + boxes.bytes() +
          (own != nullptr ? own->bytes() : 0);
 }
 

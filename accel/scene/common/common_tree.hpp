@@ -3,6 +3,7 @@
 
 #include "../../../dispatch/table/traversal.hpp"
 #include "../../layout/reference.hpp"
+#include "../bounded_tree_arrays.hpp"
 #include "../geometry.hpp"
 #include "../instance.hpp"
 
@@ -45,6 +46,7 @@ struct CommonTree {
   const TreeView* view = nullptr;            // of the tree
   std::vector<Member> members;               // as in MemberNumbers
   std::vector<TriangleOwner> slots;
+  BoundedTreeArrays boxes;                // over the boxes of members
   unsigned shift = 31;                    // above all numbers of an only member
   std::uint32_t mask = ~0u;               // of each member that is left
   std::size_t triangles = 0, struck = 0;  // of all members; of those that have left

@@ -153,8 +153,9 @@ void CommonUpdate::set_tree(CommonGroup& group, const std::vector<std::uint32_t>
   for (const std::uint32_t i : chosen) tree->triangles += triangles_of(i);
   if (chosen.size() > 1) tree->shift = shift_of_slots(tree->triangles, chosen.size());
   std::uint32_t first = 0;
+  std::vector<Box> boxes;
   for (const std::uint32_t i : chosen) {
-    is_member_[i] = 1;
+    is_member_[i] = 1, boxes.push_back(bounds_[i].box);
     const TriangleOwner owner{first, scene_.instances[i].geometry, i};
     const auto triangles = static_cast<std::uint32_t>(triangles_of(i));
     tree->members.push_back({owner, bounds_[i].box, triangles});
@@ -163,6 +164,7 @@ void CommonUpdate::set_tree(CommonGroup& group, const std::vector<std::uint32_t>
     first += slots << tree->shift;
   }
   tree->members.push_back({{first, no_part, no_part}});
+  tree->boxes = build_box_tree("scene", boxes, {});
   tree->mask = group.mask;
   const std::shared_ptr<Geometry>& alone = scene_.geometries[tree->members[0].geometry];
   if (chosen.size() > 1) tree->own = std::make_shared<Bvh>(united(scene_, tree->members, threads));

@@ -4,7 +4,7 @@
 namespace raylanes::testing {
 namespace {
 
-template <class T, class Tree>
+template <class T, class Tree, class Closest = ClosestPointOf<T>>
 void expect_points_apart(const Tree& tree) {
   using Point = std::array<T, 3>;
   Random random(705);
@@ -18,9 +18,8 @@ void expect_points_apart(const Tree& tree) {
   const auto over = [&]<class Result>(Result*) {
     return std::span(reinterpret_cast<Result*>(&points[0][2]), points.size());
   };
-  EXPECT_THROW(
-      tree.closest_points(VertexRecords<T>(points.data(), 500), over((ClosestPointOf<T>*)nullptr).first(500)),
-      std::invalid_argument);
+  EXPECT_THROW(tree.closest_points(VertexRecords<T>(points.data(), 500), over((Closest*)nullptr).first(500)),
+               std::invalid_argument);
   EXPECT_THROW(tree.locate(view, over((Location*)nullptr)), std::invalid_argument);
   EXPECT_THROW(tree.winding_numbers(view, over((T*)nullptr)), std::invalid_argument);
   EXPECT_THROW(tree.signed_distances(view, over((T*)nullptr)), std::invalid_argument);
@@ -72,6 +71,7 @@ TEST(PointsApart, points_corners_and_counts) {
   const BvhDKind doubles;
   expect_points_apart<float>(floats.tree), expect_points_apart<float>(cells.tree);
   expect_points_apart<double>(doubles.tree);
+  expect_points_apart<float, Scene, SceneClosestPoint>(SceneKind().tree);
   expect_corners_apart<float>(floats.tree, std::vector<Triangle>(900));
   expect_corners_apart<float>(cells.tree, std::vector<Triangle>(900));
   expect_corners_apart<double>(doubles.tree, std::vector<TriangleD>(900));

@@ -134,13 +134,10 @@ void add_nearest(Calls& calls, const std::string& of, const Tree& tree, Batch<T,
   calls[of + "::bytes"] = [&] { tree.bytes(); };
 }
 
-template <class T, class Tree>
-void add_queries(Calls& calls, const std::string& of, const Tree& tree, Batch<T, HitOf<T>>& b,
-                 const Path* path, int threads) {
-  const ListOptions lists{.path = path, .threads = threads};
-  calls[of + "::all_hits"] = [&, lists] { tree.all_hits(b.rays, lists), tree.all_hits(b.arrays, lists); };
-  calls[of + "::crossings"] = [&, lists] { tree.crossings(b.rays, lists), tree.crossings(b.arrays, lists); };
-  calls[of + "::count_crossings"] = [&, lists] { tree.count_crossings(b.rays, b.counts, lists); };
+// The calls with points; `closest` are for their results.
+template <class T, class AnyHit, class Tree, class Closest>
+void add_points(Calls& calls, const std::string& of, const Tree& tree, Batch<T, AnyHit>& b,
+                std::vector<Closest>& closest, const Path* path, int threads) {
   calls[of + "::locate"] = [&, path, threads] {
     for (std::size_t rule = 0; rule < inside_rule_names.size(); ++rule)
       tree.locate(b.points, b.locations,
@@ -150,7 +147,7 @@ void add_queries(Calls& calls, const std::string& of, const Tree& tree, Batch<T,
     tree.winding_numbers(b.points, b.numbers, {.path = path, .threads = threads});
   };
   calls[of + "::closest_points"] = [&, path, threads] {
-    tree.closest_points(b.points, b.closest, {.path = path, .threads = threads});
+    tree.closest_points(b.points, closest, {.path = path, .threads = threads});
   };
   calls[of + "::closest_point"] = [&, path] {
     for (const auto& point : b.points) tree.closest_point(point, {.path = path});
@@ -161,6 +158,16 @@ void add_queries(Calls& calls, const std::string& of, const Tree& tree, Batch<T,
       tree.signed_distances(b.points, b.numbers,
                             {.rule = static_cast<InsideRule>(rule), .path = path, .threads = threads});
   };
+}
+
+template <class T, class Tree>
+void add_queries(Calls& calls, const std::string& of, const Tree& tree, Batch<T, HitOf<T>>& b,
+                 const Path* path, int threads) {
+  const ListOptions lists{.path = path, .threads = threads};
+  calls[of + "::all_hits"] = [&, lists] { tree.all_hits(b.rays, lists), tree.all_hits(b.arrays, lists); };
+  calls[of + "::crossings"] = [&, lists] { tree.crossings(b.rays, lists), tree.crossings(b.arrays, lists); };
+  calls[of + "::count_crossings"] = [&, lists] { tree.count_crossings(b.rays, b.counts, lists); };
+  add_points<T>(calls, of, tree, b, b.closest, path, threads);
   calls[of + "::corners"] = [&] {
     std::vector<std::conditional_t<sizeof(T) == 4, Triangle, TriangleD>> triangles(b.hits.size());
     tree.corners(b.hits, triangles);
@@ -304,6 +311,19 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     calls["Scene::normals"] = [&] {
       std::vector<Float3> normals(of_scene.hits.size());
       solid.normals(of_scene.hits, normals, threads);
+    };
+    calls["Scene::corners"] = [&] {
+      std::vector<Triangle> triangles(of_scene.hits.size());
+      solid.corners(of_scene.hits, triangles, threads);
+    };
+    std::vector<SceneClosestPoint> closest(of_scene.points.size());
+    add_points<float>(calls, "Scene", solid, of_scene, closest, path, threads);
+    calls["Scene::innermost_parts"] = [&] {
+      std::vector<ContainingPart> parts(of_scene.points.size());
+      solid.innermost_parts(of_scene.points, parts, {.path = path, .threads = threads});
+    };
+    calls["Scene::containing_parts"] = [&] {
+      solid.containing_parts(of_scene.points, {.path = path, .threads = threads});
     };
     calls["Scene::place"] = [&] {
       Scene other;
