@@ -26,6 +26,7 @@ bool are_defaults(const Options& options) {
   std::uintptr_t some = bits(options.path) | bits(options.active) | bits(options.progress) |
                         bits(options.skip.first) | options.skip.count | bits(options.after.first) |
                         options.after.count | static_cast<std::uintptr_t>(options.facing);
+  if constexpr (requires { options.masks; }) some |= options.masks.size();
   if constexpr (requires { options.counters; }) {
     struct Choices {
       TriangleTest test;

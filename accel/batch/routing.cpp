@@ -98,18 +98,18 @@ TraversalMode mode_of_others(const TreeView& tree, const TraversalChoice& choice
 }
 // The loop of calls with one ray, which has less to do for each than a batch of single rays.
 void run_calls(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
-  const RuledCallRow* const chosen = choice.chosen;
+  const RuledCallRow* const by_rule = choice.by_rule;
   const CallRow* const call = choice.call;
-  if (chosen == nullptr && call == nullptr) return run(tree, *choice.single, batch);
+  if (by_rule == nullptr && call == nullptr) return run(tree, *choice.single, batch);
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Ray& ray = batch.rays[i];
     const std::uint32_t skipped = batch.skip != nullptr ? batch.skip[i] : no_primitive;
     if (batch.hits != nullptr)
       batch.hits[i] =
-          chosen != nullptr ? chosen->closest(tree, ray, batch.facing, skipped) : call->closest(tree, ray);
+          by_rule != nullptr ? by_rule->closest(tree, ray, batch.facing, skipped) : call->closest(tree, ray);
     else
       batch.occluded[i] =
-          chosen != nullptr ? chosen->any(tree, ray, batch.facing, skipped) : call->any(tree, ray);
+          by_rule != nullptr ? by_rule->any(tree, ray, batch.facing, skipped) : call->any(tree, ray);
   }
 }
 void run_by(TraversalMode mode, const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
@@ -228,7 +228,7 @@ void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, 
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
         batch.counters = call.counters, batch.scratch = call.scratch;
-        batch.facing = choice.facing, batch.skip = call.skip, batch.chosen = choice.chosen;
+        batch.facing = choice.facing, batch.skip = call.skip, batch.by_rule = choice.by_rule;
         set_answers(batch, call.answers);
         run(tree, choice, batch);
       });
@@ -238,7 +238,7 @@ template void trace(const TreeView&, TraversalChoice, const RaySource&, const Sp
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;
-  batch.facing = choice.facing, batch.chosen = choice.chosen;
+  batch.facing = choice.facing, batch.by_rule = choice.by_rule;
   if (choice.mode == TraversalMode::single) return run(tree, *choice.single, batch);
   const std::size_t bytes = scratch_bytes(choice, batch.size);
   Scratch scratch(bytes);

@@ -13,10 +13,10 @@ struct TraversalChoice {
   const TraversalRow *single, *packet, *stream;
   TraversalMode mode = TraversalMode::automatic;
   BatchHint hint = BatchHint::none;
-  TraceCounters* counters = nullptr;     // of counted rows: see TraceOptions
-  Facing facing = Facing::any;           // of rows of QueryKernels, and of packets with `chosen`
-  const RuledCallRow* chosen = nullptr;  // as in TraceBatch
-  const CallRow* call = nullptr;         // of the rows of single rays, if these are not counted
+  TraceCounters* counters = nullptr;      // of counted rows: see TraceOptions
+  Facing facing = Facing::any;            // of rows of QueryKernels, and of packets with `by_rule`
+  const RuledCallRow* by_rule = nullptr;  // as in TraceBatch
+  const CallRow* call = nullptr;          // of the rows of single rays, if these are not counted
   // As in TraversalKernels, if blocks have corners; null: packets are taken unseen.
   std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray) = nullptr;
   bool may_fly = false;  // whether the rows of single rays have code for some at a time

@@ -5,6 +5,7 @@
 
 #include "../../dispatch/table/double_rays.hpp"
 #include "../batch/ray_source.hpp"
+#include "../batch/triangle_masks.hpp"
 #include "../layout/bvh_arrays.hpp"
 #include "../mesh/boundary.hpp"
 
@@ -53,6 +54,12 @@ inline DoubleTreeView view_of(const BvhDArrays* tree) {
   return tree != nullptr
              ? tree->view()
              : DoubleTreeView{{nullptr, nullptr, empty_reference, empty_box}, nullptr, {}, empty_double_box};
+}
+
+// A tree with what kernels know of the options' masks.
+inline DoubleTreeView masked(DoubleTreeView tree, const TraceOptionsD& options) {
+  tree.tree.masks = masks_of(options);
+  return tree;
 }
 
 // As BvhD::each_triangle(): without those that collapsed at a refit.

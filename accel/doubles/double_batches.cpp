@@ -97,7 +97,7 @@ void run_together(const RowsOfPath& rows, const DoubleTreeView& tree, const Doub
 }  // namespace
 
 bool takes_all(const TraceOptionsD& options) {
-  return options.facing == Facing::any && options.skip.first == nullptr;
+  return options.facing == Facing::any && options.skip.first == nullptr && options.masks.empty();
 }
 const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   require_threads("trace", options.threads);
@@ -105,11 +105,12 @@ const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   return kernels_of(checked_path(options.path)).doubles;
 }
 
-void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, const HitViewD& hits,
+void trace_hits(const DoubleTreeView& of, const RaySourceOf<double>& given, const HitViewD& hits,
                 const TraceOptionsD& by) {
   const CheckedCall checked("trace", given, hits, by);
   const RaySourceOf<double>& rays = checked.rays;
   const TraceOptionsD& options = checked.options;
+  const DoubleTreeView tree = masked(of, options);
   const DoubleRayKernels& kernels = checked_kernels(options);
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
   const bool has_after = options.after.first != nullptr;
@@ -131,10 +132,11 @@ void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& given, co
                     });
 }
 
-void trace_occluded(const DoubleTreeView& tree, const RaySourceOf<double>& given,
+void trace_occluded(const DoubleTreeView& of, const RaySourceOf<double>& given,
                     std::span<std::uint8_t> occluded, const TraceOptionsD& options) {
   const CheckedCall checked("trace", given, occluded, options);
   const RaySourceOf<double>& rays = checked.rays;
+  const DoubleTreeView tree = masked(of, options);
   const DoubleRayKernels& kernels = checked_kernels(options);
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
   const bool together = rays.size() >= min_shared_point && takes_all(options);

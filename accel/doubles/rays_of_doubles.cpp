@@ -55,7 +55,7 @@ class RayDoor<BvhD> {
         is_quick() && (are_default || (options.threads >= 0 &&
                                        static_cast<std::size_t>(options.facing) < facing_names.size() &&
                                        options.skip.count == (options.skip.first != nullptr ? rays : 0) &&
-                                       options.after.first == nullptr));
+                                       options.after.first == nullptr && options.masks.empty()));
     return {are_usual ? tree_ : nullptr, options};
   }
   HitD closest_by(const RayD& ray, const TraceOptionsD& options) const {
@@ -94,14 +94,14 @@ class RayDoor<BvhD> {
     const DoubleRayKernels& kernels = checked_kernels(options);
     const KeptCall<double> call(rejection, options);
     const QuietFloats quiet;
-    return kernels.kept.closest(view_of(tree_), ray, call.asked);
+    return kernels.kept.closest(masked(view_of(tree_), options), ray, call.asked);
   }
   bool any_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
                 const TraceOptionsD& options) const {
     const DoubleRayKernels& kernels = checked_kernels(options);
     const KeptCall<double> call(rejection, options);
     const QuietFloats quiet;
-    return kernels.kept.any(view_of(tree_), ray, call.asked);
+    return kernels.kept.any(masked(view_of(tree_), options), ray, call.asked);
   }
 
   detail::KernelsOfCalls<BvhD> kernels_of_calls(const TraceOptionsD& options) const {
@@ -121,7 +121,7 @@ class RayDoor<BvhD> {
     const std::uint32_t skipped = skip_of_one(name, options);
     batch.rays = &ray, batch.size = 1, batch.facing = options.facing;
     if (skipped != no_primitive) batch.skip = &skipped;
-    (kernels.*row)(view_of(tree_), batch);
+    (kernels.*row)(masked(view_of(tree_), options), batch);
   }
 
   const BvhDArrays* tree_;  // null: the empty tree

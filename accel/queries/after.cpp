@@ -16,7 +16,8 @@ void trace_after(const TracedTree& tree, const RaySource& rays, const HitView& h
                  const TraceOptions& options) {
   require_exact(options);
   const QueryKernels& kernels = checked_queries<float>("trace", options);
-  const TreeView view = tree.view;
+  TreeView view = tree.view;
+  view.masks = masks_of(options);
   trace_calls_after(plan_of_singles(options.threads, options.counters, options.progress), rays, hits,
                     options.after, [&](const RayCall<Hit>& call, const Hit* after) {
                       TraceBatch batch;

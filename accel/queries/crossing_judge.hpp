@@ -68,7 +68,7 @@ class CrossingJudge {
   template <class Options>
   static ListOptions options_of_lists(const Options& options) {
     ListOptions lists;
-    lists.path = options.path;
+    lists.path = options.path, lists.mask = options.mask, lists.masks = options.masks;
     if constexpr (requires { options.counters; }) lists.counters = options.counters;
     return lists;
   }

@@ -29,6 +29,7 @@ struct ListMaker {
   Facing facing;
   bool has_parts;  // as in TracedTree
   const Progress* progress;
+  TriangleMasks masks;
   ListStop stop = ListStop::never;
 };
 
@@ -52,8 +53,16 @@ ListMaker<T> checked_maker(const char* call, ListKind kind, const TreeViewOf<T>&
                            const Options& options, std::uint32_t max_count, Facing facing) {
   checked_index(call, "facing", facing, facing_names.size());
   const QueryKernelsOf<T>& kernels = checked_queries<T>(call, options);
-  return {tree,      kernels,         kind, max_count, options.threads, options.counters, facing,
-          has_parts, options.progress};
+  return {tree,
+          kernels,
+          kind,
+          max_count,
+          options.threads,
+          options.counters,
+          facing,
+          has_parts,
+          options.progress,
+          masks_of(options)};
 }
 template <class Options>
 ListMaker<float> checked_maker(const char* call, ListKind kind, const TracedTree& tree,
@@ -185,7 +194,7 @@ void each_list(const ListMaker<T>& maker, const Rays& rays, std::size_t begin, s
   ListBatchOf<T> batch;
   batch.kind = maker.kind, batch.stop = maker.stop, batch.max_count = maker.max_count,
   batch.counters = counters;
-  batch.facing = maker.facing;
+  batch.facing = maker.facing, batch.masks = maker.masks;
   batch.end = scratch.take<std::size_t>(most);
   ListRoom<T> room(maker, most);
   for (std::size_t count; begin < end; begin += count) {

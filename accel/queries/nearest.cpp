@@ -87,12 +87,12 @@ TraversalChoice choice_of_both_sides(TreeKind kind, const TraceOptions& options,
   set_what_tells(choice, options);
   return choice;
 }
-// The rows of triangles that the caller chooses.
+// The rows of triangles that the caller chooses, by side, skip or masks.
 TraversalChoice choice_by_rule(const TraceOptions& options) {
   if (options.test != TriangleTest::exact)
     throw std::invalid_argument(
         options.facing == Facing::any
-            ? std::string("trace: skip takes the test exact")
+            ? std::string("trace: skip and masks take the test exact")
             : "trace: facing " + std::string(facing_names[static_cast<std::size_t>(options.facing)]) +
                   " takes the test exact; with other tests only facing any is allowed");
   const QueryKernels& rows = checked_queries<float>("trace", options);
@@ -122,14 +122,14 @@ const CallRow* usual_row(const TraceOptions& options) {
   const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
   const bool is_usual = is_usual_but_for_rule(options) && options.facing == Facing::any &&
                         options.after.first == nullptr && options.skip.first == nullptr &&
-                        test < std::size(triangle_tests);
+                        options.masks.empty() && test < std::size(triangle_tests);
   if (!is_usual) return nullptr;
   const KernelTable& kernels = kernels_of(checked_path(options.path));
   const CallRow& row = kernels.traversal.call.row[test][grade];
   return row.closest != nullptr ? &row : nullptr;
 }
 bool is_usual_kept(const TraceOptions& options, std::size_t rays) {
-  return is_usual_but_for_rule(options) && options.test == TriangleTest::exact &&
+  return is_usual_but_for_rule(options) && options.test == TriangleTest::exact && options.masks.empty() &&
          static_cast<std::size_t>(options.facing) < facing_names.size() &&
          options.skip.count == (options.skip.first != nullptr ? rays : 0);
 }
@@ -152,9 +152,11 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   checked_index("trace", "hint", options.hint, batch_hint_names.size());
   require_threads("trace", options.threads);
   checked_index("trace", "facing", options.facing, facing_names.size());
-  Traversal traversal{tree.view, options.facing == Facing::any && options.skip.first == nullptr
-                                     ? choice_of_both_sides(tree.kind, options, test, grade)
-                                     : choice_by_rule(options)};
+  const bool takes_all =
+      options.facing == Facing::any && options.skip.first == nullptr && options.masks.empty();
+  Traversal traversal{
+      tree.view, takes_all ? choice_of_both_sides(tree.kind, options, test, grade) : choice_by_rule(options)};
+  traversal.tree.masks = masks_of(options);
   traversal.choice.progress = options.progress;
   traversal.choice.fixed_parts = options.test != TriangleTest::exact && options.mode != TraversalMode::single;
   return traversal;

@@ -22,7 +22,7 @@ void count_in_kernels(const ListMaker<float>& maker, const RaySource& rays, std:
   ListBatch batch;
   batch.kind = maker.kind, batch.list = list.data(), batch.room = room_for_counts;
   batch.counts = memory.take<CrossingCount>(max_rays), batch.scratch = scratch.data(),
-  batch.counters = counters, batch.facing = maker.facing;
+  batch.counters = counters, batch.facing = maker.facing, batch.masks = maker.masks;
   for (; begin < end; begin += max_rays) {
     active.load(begin, std::min(max_rays, end - begin));
     batch.rays = active.rays, batch.size = active.size, batch.skip = active.skip;

@@ -7,6 +7,7 @@
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "../batch/routing.hpp"
+#include "../batch/triangle_masks.hpp"
 #include "../layout/leaves.hpp"
 #include "../mesh/bounding_boxes.hpp"
 

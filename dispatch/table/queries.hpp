@@ -38,6 +38,7 @@ struct ListBatchOf {
   std::uint32_t max_count = ~0u;
   Facing facing = Facing::any;
   const std::uint32_t* skip = nullptr;  // for each ray the primitive that is not there for it; null: none
+  TriangleMasks masks = {};
   ListEntryOf<T>* list = nullptr;
   HitOf<T>* hits = nullptr;  // the hit of each entry, in lists of hits
   std::size_t room = 0;      // for so many; overlaps nothing

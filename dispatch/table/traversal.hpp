@@ -75,7 +75,7 @@ struct TraceBatchOf {
   const std::uint32_t* skip = nullptr;
   const HitOf<T>* after = nullptr;  // of `closest_after`: for each ray the hit after which it looks
   // For packets of floats: what traces rays that go alone; not null if `facing` or `skip` say something.
-  const RuledCallRow* chosen = nullptr;
+  const RuledCallRow* by_rule = nullptr;
 
   // Some of the rays, with their answers. Inlined always, so that no symbol has a path's instructions.
   [[gnu::always_inline]] TraceBatchOf part(std::size_t first, std::size_t count) const {

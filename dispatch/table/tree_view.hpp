@@ -1,6 +1,7 @@
 // A tree that crosses the kernel table.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <raylanes/tree.hpp>
@@ -22,6 +23,19 @@ struct StreamSizes {
   std::uint32_t closest = 256, occluded = 256;
 };
 
+// Which triangles are there for a call: those whose word has a bit of `mask`, and those without a word. Inlined always,
+// so that no symbol has a path's instructions.
+struct TriangleMasks {
+  const std::uint32_t* words = nullptr;  // of primitives; null: all are there
+  std::size_t count = 0;
+  std::uint32_t mask = ~0u;
+
+  [[gnu::always_inline]] bool see_all() const { return words == nullptr; }
+  [[gnu::always_inline]] bool see(std::uint32_t primitive) const {
+    return primitive >= count || (words[primitive] & mask) != 0;
+  }
+};
+
 // A tree as the kernels see it; owns nothing. `root` is empty_reference for a tree without primitives; a k-d tree
 // has cells, too, the root first, and its nodes are wide_nodes of these.
 struct TreeView {
@@ -37,6 +51,7 @@ struct TreeView {
   // Boxes are tested in the tree's own coordinates, and padded by a share of their size and a ray's reach together, up
   // to this size. 0: beside its own size the tree is so far from zero that the padding would be large.
   float max_fused_size = 0x1p60f;
+  TriangleMasks masks = {};  // only rows with a rule look at them, and rows of queries
 };
 
 // Whether single rays of doubles in a batch take less time some at a time than one after the other, as measured:

@@ -39,7 +39,8 @@ struct ListOptions {
   LaneBits active = nullptr;  ///< the active rays; the others have empty lists; null: all
   PrimitiveView skip =
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
-  std::uint32_t mask = ~0u;  ///< of instances of a scene, as in TraceOptions
+  std::uint32_t mask = ~0u;  ///< of instances of a scene, or with `masks`, as in TraceOptions
+  std::span<const std::uint32_t> masks = {};  ///< of triangles, as in TraceOptions
   TraceCounters* counters =
       nullptr;  ///< as in TraceOptions; rays are traced individually then, sorting is not counted
   /// If not null, called between parts, as Progress says; if it throws, any counts may be written.
@@ -92,7 +93,7 @@ using HitFilterD = HitFilterOf<HitD>;
 
 /// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
 /// There must be a mask for each ray of the call and for each triangle of the mesh. The filter keeps both spans, so the
-/// masks must outlive the filter.
+/// masks must outlive the filter. If all rays have one mask, TraceOptions::masks does the same in the walk.
 inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
                              std::span<const std::uint32_t> of_triangles) {
   return [=](std::span<const std::size_t> rays, std::span<const Hit> hits, std::span<std::uint8_t> rejected) {

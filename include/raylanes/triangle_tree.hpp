@@ -50,8 +50,14 @@ struct TraceOptions {
   /// may be those that results go to. An empty view leaves out nothing.
   /// Throws std::invalid_argument for another test, or another number of indices than rays.
   PrimitiveView skip = {};
-  /// In scenes: only instances whose mask has a bit in common with this one are there. Trees have no masks.
+  /// In scenes: only instances whose mask has a bit in common with this one are there. In trees this goes with `masks`.
   std::uint32_t mask = ~0u;
+  /// In trees, for TriangleTest::exact: triangle i is there only if masks[i] has a bit in common with `mask`. Triangles
+  /// from masks.size() on are there. So an empty span, the default, asks nothing and costs nothing. Triangles that are
+  /// not there have no hits and no crossings; the call is asked about none of them, and takes about the time of one
+  /// with `skip`. The words must not change during the call.
+  /// Throws std::invalid_argument for another test, and in scenes.
+  std::span<const std::uint32_t> masks = {};
   /// If not null, what the call costs is added here, summed over its threads. No other call may add to it at the same
   /// time. Results keep their bytes; the call takes longer.
   /// Counts need the grade reproducible, a build with -Dcounters=true (the default), and the test exact or the mode

@@ -44,8 +44,11 @@ inline const ShearAxes& shear_axes(const Double3& direction) {
 }
 
 struct DoubleTriangles : TrianglesOfHalves {
+  const DoubleTreeView* tree = nullptr;  // null: nobody asks for masks
+
   explicit DoubleTriangles(const LeafHalf* of) : TrianglesOfHalves{of} {}
-  explicit DoubleTriangles(const DoubleTreeView& tree) : DoubleTriangles(tree.halves) {}
+  explicit DoubleTriangles(const DoubleTreeView& of) : TrianglesOfHalves{of.halves}, tree(&of) {}
+  const TriangleMasks& masks() const { return tree->tree.masks; }
 
   // Asks for a triangle ahead of time.
   void prefetch(std::uint32_t leaf_triangle) const {

@@ -71,8 +71,8 @@ struct AnyDouble : AsStored {
   int beside = never_beside;
   bool found = false;
 
-  AnyDouble(const RayD& ray, float end_of_ray, const DoubleHitRule& chosen = DoubleHitRule())
-      : sides(chosen), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
+  AnyDouble(const RayD& ray, float end_of_ray, const DoubleHitRule& rule = DoubleHitRule())
+      : sides(rule), tmax(finite_tmax(ray.tmax)), end(end_of_ray) {}
   float box_tmax() const { return end; }
 
   HitsAfter<HitD> rule_if_unusual() const { return {before_all_doubles, sides.facing, sides.skipped}; }
@@ -232,9 +232,9 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame,
 #endif
 }
 
-// Whether all triangles count for all rays.
-inline bool takes_all(const DoubleBatch& batch) {
-  return batch.facing == Facing::any && batch.skip == nullptr;
+// Whether all triangles are there for all rays.
+inline bool takes_all(const DoubleTreeView& tree, const DoubleBatch& batch) {
+  return batch.facing == Facing::any && batch.skip == nullptr && tree.tree.masks.see_all();
 }
 
 // The triangle that is hit nearest by the rule, from `begin` on.
@@ -259,7 +259,7 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
 }
 [[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
                                             std::uint32_t skipped) {
-  const bool takes_all = facing == Facing::any && skipped == no_primitive;
+  const bool takes_all = facing == Facing::any && skipped == no_primitive && tree.tree.masks.see_all();
   return known_hit(DoubleTriangles(tree), ray,
                    takes_all ? nearest_triangle_of_ray(tree, ray)
                              : nearest_triangle(tree, ray, ray.tmin,

@@ -224,12 +224,12 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
 }
 // Batches that choose triangles, and hits after others, go as single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = takes_all(batch) && batch.after == nullptr;
+  const bool is_plain = takes_all(tree, batch) && batch.after == nullptr;
   is_plain&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)
                                                : closest_doubles(tree, batch);
 }
 [[maybe_unused]] void any_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = takes_all(batch);
+  const bool is_plain = takes_all(tree, batch);
   is_plain&& tree.tree.root != empty_reference ? stream_doubles<true>(tree, batch) : any_double(tree, batch);
 }
 

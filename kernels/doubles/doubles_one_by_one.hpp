@@ -135,7 +135,7 @@ inline void closest_doubles_as(const DoubleTreeView& tree, const DoubleBatch& ba
   hits_of_some<1>(triangles, batch, hits_of_some<double_lanes>(triangles, batch, 0, nearest), nearest);
 }
 [[maybe_unused]] void closest_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  takes_all(batch) && batch.after == nullptr
+  takes_all(tree, batch) && batch.after == nullptr
       ? closest_doubles_as<NearestOfBatch<HitsFromBegin>>(tree, batch)
       : closest_doubles_as<NearestOfBatch<HitsAfterOthers>>(tree, batch);
 }

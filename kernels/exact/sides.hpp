@@ -35,14 +35,16 @@ template <class Batch>
 inline std::uint32_t skipped_by(const Batch& batch, std::size_t i) {
   return batch.skip != nullptr ? batch.skip[i] : no_primitive;
 }
-// Leaves the lanes of triangles other than the skipped one; they begin with `first`.
+// Leaves the lanes of triangles that the masks see, but for the skipped one; they begin with `first`.
 template <class Triangles>
 inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const Triangles& triangles,
                                std::uint32_t first) {
-  if (skipped == no_primitive) return lanes;
+  const TriangleMasks& masks = triangles.masks();
+  if (skipped == no_primitive && masks.see_all()) return lanes;
   for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
-    if (triangles.primitive(first + static_cast<std::uint32_t>(lane)) == skipped) lanes &= ~(1u << lane);
+    const std::uint32_t primitive = triangles.primitive(first + static_cast<std::uint32_t>(lane));
+    if (primitive == skipped || !masks.see(primitive)) lanes &= ~(1u << lane);
   }
   return lanes;
 }
@@ -76,7 +78,7 @@ struct NoRule {
   }
 };
 
-// Triangles of one side, or both, but for the one that the ray skips.
+// Triangles of one side, or both, that the masks see, but for the one that the ray skips.
 struct HitRule {
   static constexpr bool chooses = true;
   Facing facing;
@@ -137,7 +139,8 @@ struct HitsAfter {
   template <class Triangles, class AnyRay>
   AnyHit admitted_hit(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
                       std::uint32_t leaf_triangle) const {
-    if (!hit || !is_after(hit, &after) || hit.primitive == skipped) return {};
+    if (!hit || !is_after(hit, &after) || hit.primitive == skipped || !triangles.masks().see(hit.primitive))
+      return {};
     return facing == Facing::any || admits(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };

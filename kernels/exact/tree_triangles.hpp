@@ -10,8 +10,11 @@ namespace {
 // leaf_triangle: eight times the number of a leaf's block, plus the lane.
 struct TreeTriangles {
   const LeafBlock<9>* blocks;
+  const TreeView& tree;
 
-  explicit TreeTriangles(const TreeView& tree) : blocks(static_cast<const LeafBlock<9>*>(tree.blocks)) {}
+  explicit TreeTriangles(const TreeView& of)
+      : blocks(static_cast<const LeafBlock<9>*>(of.blocks)), tree(of) {}
+  const TriangleMasks& masks() const { return tree.masks; }
   float number(int k, std::uint32_t leaf_triangle) const {
     return blocks[leaf_triangle / tree_width].number[k][leaf_triangle % tree_width];
   }

@@ -70,7 +70,7 @@ struct HitList {
   // With an upper bound of t, for lists of hits. True ends the search.
   bool add(T t_hi, int side, std::uint32_t leaf_triangle, std::uint32_t primitive,
            std::uint32_t zero_weights = 0) {
-    if (primitive == skipped) return false;
+    if (primitive == skipped || !batch.masks.see(primitive)) return false;
     is_full = !store.put(static_cast<std::int16_t>(side), leaf_triangle, primitive,
                          static_cast<std::uint16_t>(zero_weights));
     if (is_full) return true;

@@ -16,6 +16,7 @@ struct Heap {
   CrossingCount* counts;      // of the rays, which a full heap is added to; null: none
   Facing facing;              // the sides that lists are of
   const std::uint32_t* skip;  // as in ListBatch
+  TriangleMasks masks;
   bool is_full = false;
   std::size_t misses_left;  // lanes that may be undecided in vain before rays go one by one
   static constexpr std::uint32_t sign = 0x80000000u;
@@ -42,11 +43,11 @@ struct Heap {
   }
   // Leaves out entries that do not count, which rays together put there.
   void keep_admitted() {
-    if (facing == Facing::any && skip == nullptr) return;
+    if (facing == Facing::any && skip == nullptr && masks.see_all()) return;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < size; ++k) {
       ray[kept] = ray[k], leaf_triangle[kept] = leaf_triangle[k], primitive[kept] = primitive[k];
-      kept += counts_entry(k) ? 1 : 0;
+      kept += admits_entry(k) ? 1 : 0;
     }
     size = kept;
   }
@@ -58,8 +59,9 @@ struct Heap {
   }
 
  private:
-  bool counts_entry(std::size_t k) const {
-    if (skip != nullptr && skip[ray[k]] == (primitive[k] & ~sign)) return false;
+  bool admits_entry(std::size_t k) const {
+    const std::uint32_t of_mesh = primitive[k] & ~sign;
+    if ((skip != nullptr && skip[ray[k]] == of_mesh) || !masks.see(of_mesh)) return false;
     return raylanes::admits(facing, (primitive[k] & sign) != 0 ? -1 : 1);
   }
   void overflow() {
@@ -206,9 +208,17 @@ template <class Counters>
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words,      words + batch.room,     words + 2 * batch.room, 0,
-            batch.room, batch.counts,           batch.facing,           batch.skip,
-            false,      max_beside * batch.size};
+  Heap heap{words,
+            words + batch.room,
+            words + 2 * batch.room,
+            0,
+            batch.room,
+            batch.counts,
+            batch.facing,
+            batch.skip,
+            batch.masks,
+            false,
+            max_beside * batch.size};
   for (std::size_t i = 0; i < batch.size && batch.counts != nullptr; ++i) batch.counts[i] = {};
   HeapBatch rays;
   rays.rays = batch.rays, rays.size = batch.size, rays.scratch = batch.scratch,

@@ -117,8 +117,8 @@ struct ClosestCandidate : NearestFirst, Candidate {
 struct RuledCandidate : ClosestCandidate {
   HitRule sides;
 
-  RuledCandidate(const Ray& ray, HitRule chosen) : RuledCandidate(Candidate(ray), chosen) {}
-  RuledCandidate(const Candidate& best, HitRule chosen) : ClosestCandidate(best), sides(chosen) {}
+  RuledCandidate(const Ray& ray, HitRule rule) : RuledCandidate(Candidate(ray), rule) {}
+  RuledCandidate(const Candidate& best, HitRule rule) : ClosestCandidate(best), sides(rule) {}
 
   template <class Verdict>
   void keep(const TreeView& tree, const Ray& ray, const Verdict& verdict, std::uint32_t first) {
@@ -170,22 +170,22 @@ struct AnyHit : AsStored {
 struct RuledAny : AnyHit {
   HitRule sides;
 
-  RuledAny(const Ray& ray, HitRule chosen) : RuledAny(finite_tmax(ray.tmax), chosen) {}
-  RuledAny(float end, HitRule chosen) : AnyHit(end), sides(chosen) {}
+  RuledAny(const Ray& ray, HitRule rule) : RuledAny(finite_tmax(ray.tmax), rule) {}
+  RuledAny(float end, HitRule rule) : AnyHit(end), sides(rule) {}
 };
 
 // The query of a test that screens, from the state of a ray's search.
 inline ClosestCandidate nearest_of(const Candidate& best, NoRule) {
   return ClosestCandidate(best);
 }
-inline RuledCandidate nearest_of(const Candidate& best, HitRule chosen) {
-  return {best, chosen};
+inline RuledCandidate nearest_of(const Candidate& best, HitRule rule) {
+  return {best, rule};
 }
 inline AnyHit any_within(float tmax, NoRule) {
   return AnyHit(tmax);
 }
-inline RuledAny any_within(float tmax, HitRule chosen) {
-  return {tmax, chosen};
+inline RuledAny any_within(float tmax, HitRule rule) {
+  return {tmax, rule};
 }
 
 }  // namespace

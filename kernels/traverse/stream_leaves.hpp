@@ -226,8 +226,10 @@ class StreamLeaves
     walk_beside<Test>(tree_, ray, query, cost);
   }
   std::uint32_t admitted(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
-    if (batch_.skip == nullptr) return lanes;
+    if (batch_.skip == nullptr && tree_.masks.see_all()) return lanes;
     const std::uint32_t primitive = TreeTriangles(tree_).primitive(leaf_triangle);
+    if (!tree_.masks.see(primitive)) return 0;
+    if (batch_.skip == nullptr) return lanes;
     for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       if (batch_.skip[rays_.number[index_of(list[lane])]] == primitive) lanes &= ~(1u << lane);

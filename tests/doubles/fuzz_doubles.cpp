@@ -106,8 +106,9 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   if (flies) let_rays_fly(tree);
   const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
   if (queries.skip.empty() && !rays.empty() && (streams || share_origin || flies))
-    expect_hits_of_many(tree, rays, streams ? 4100 : 80, queries.expected.hits,
-                        {.path = queries.path, .facing = queries.facing});
+    expect_hits_of_many(
+        tree, rays, streams ? 4100 : 80, queries.expected.hits,
+        {.path = queries.path, .facing = queries.facing, .mask = queries.mask, .masks = queries.masks});
   expect_row(bytes, mesh, tree, queries.path);
   if (bytes.chance(40))
     expect_closest_points(mesh, tree, VertexViewD(rays.data(), rays.size(), sizeof(RayD)), queries.path);

@@ -206,7 +206,7 @@ void check_queries(EveryRow& every, const QueryKernels& kernels, const Traversal
     expect_hits<float>(
         "chosen", Rules::chosen,
         [&](TraceBatch batch) {
-          batch.chosen = &kernels.ruled_call;
+          batch.by_rule = &kernels.ruled_call;
           by_batches(tree, packets)(batch);
         },
         "packets");

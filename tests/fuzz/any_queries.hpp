@@ -2,6 +2,7 @@
 #pragma once
 
 #include "any_filters.hpp"
+#include "any_masks.hpp"
 #include "query_checks.hpp"
 
 namespace raylanes::testing {
@@ -25,6 +26,8 @@ class AnyQueries {
   const Path* const path;
   const Facing facing;
   std::vector<std::uint32_t> skip;  // empty: nothing is skipped
+  const std::uint32_t mask;
+  const std::span<const std::uint32_t> masks;  // before a page that faults
   ExpectedLists<T> expected;
 
   AnyQueries(Bytes& bytes, const oracle::MeshOf<T>& mesh, const std::vector<RayOf<T>>& rays)
@@ -32,8 +35,11 @@ class AnyQueries {
         facing(bytes.chance(128)   ? Facing::any
                : bytes.chance(128) ? Facing::front
                                    : Facing::back),
+        mask(static_cast<std::uint32_t>(bytes.below(8))),
+        masks(any_masks(bytes, mesh.triangles.size())),
         bytes_(bytes),
-        mesh_(mesh),
+        whole_(mesh),
+        mesh_(seen_by(mesh, masks, mask)),
         rays_(rays),
         rule_(static_cast<InsideRule>(bytes.below(inside_rule_names.size()))),
         max_count_(bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(70))),
@@ -43,12 +49,12 @@ class AnyQueries {
     for (const RayOf<T>& ray : rays) {
       std::uint32_t skipped = no_primitive;
       if (skips && bytes.chance(160)) {
-        const auto all = oracle::exact_hits(mesh, ray);
+        const auto all = oracle::exact_hits(mesh_, ray);
         skipped = all.empty() ? static_cast<std::uint32_t>(bytes.below(1000)) : bytes.pick(all).primitive;
       }
       if (skips) skip.push_back(skipped);
-      expected.hits.push_back(oracle_hits(mesh, ray, facing, skipped));
-      std::erase_if(expected.crossings.emplace_back(oracle::exact_crossings(mesh, ray)), [&](const auto& c) {
+      expected.hits.push_back(oracle_hits(mesh_, ray, facing, skipped));
+      std::erase_if(expected.crossings.emplace_back(oracle::exact_crossings(mesh_, ray)), [&](const auto& c) {
         return c.primitive == skipped ||
                (facing != Facing::any && c.side != (facing == Facing::front ? -1 : 1));
       });
@@ -60,19 +66,25 @@ class AnyQueries {
   // checked.
   template <class Tree>
   void ask(const Tree& tree, bool flush) const {
-    const Options options{.path = path, .threads = threads_, .facing = facing, .skip = skip};
-    expect_corners(tree, mesh_, names_);
+    const Options options{
+        .path = path, .threads = threads_, .facing = facing, .skip = skip, .mask = mask, .masks = masks};
+    expect_corners(tree, whole_, names_);
     run_out_of_memory(bytes_, tree, rays_, rule_);
     expect_active_alone(tree, rays_, path, rule_);
     expect_locations(tree, !flush);
-    expect_windings(tree, mesh_, rays_, {.accuracy = accuracy_, .path = path, .threads = threads_}, !flush);
+    expect_windings(tree, whole_, rays_, {.accuracy = accuracy_, .path = path, .threads = threads_}, !flush);
     if (flush) return expect_order(tree, options);
-    expect_lists(
-        tree, rays_, expected,
-        {.max_count = max_count_, .facing = facing, .path = path, .threads = threads_, .skip = skip});
+    expect_lists(tree, rays_, expected,
+                 {.max_count = max_count_,
+                  .facing = facing,
+                  .path = path,
+                  .threads = threads_,
+                  .skip = skip,
+                  .mask = mask,
+                  .masks = masks});
     expect_closest_crossings(tree, mesh_, rays_, options);
     expect_kept(tree, rays_, expected.hits, options);
-    expect_hits_after(tree, rays_, expected, path, facing, skip);
+    expect_hits_after(tree, rays_, expected, options);
   }
 
  private:
@@ -84,8 +96,12 @@ class AnyQueries {
   void expect_order(const Tree& tree, const Options& options) const {
     std::vector<HitOf<T>> closest_crossings(rays_.size());
     tree.closest_crossing(rays_, closest_crossings, options);
-    const auto hits =
-        tree.all_hits(rays_, {.max_count = max_count_, .facing = facing, .path = path, .skip = skip});
+    const auto hits = tree.all_hits(rays_, {.max_count = max_count_,
+                                            .facing = facing,
+                                            .path = path,
+                                            .skip = skip,
+                                            .mask = mask,
+                                            .masks = masks});
     const auto crossings = tree.crossings(rays_, {.max_count = max_count_, .path = path});
     for (std::size_t i = 0; i < rays_.size(); ++i)
       if (!std::ranges::is_sorted(hits[i], {}, &HitOf<T>::t) ||
@@ -111,7 +127,7 @@ class AnyQueries {
                             : distances[i] < 0 ? Location::inside
                                                : Location::outside;
       if (side != locations[i]) fail("a signed distance of another sign than its location");
-      if (is_exact && (is_finite(point) && is_on(mesh_, point)) != (locations[i] == Location::on))
+      if (is_exact && (is_finite(point) && is_on(whole_, point)) != (locations[i] == Location::on))
         fail(std::string(path->name) + ": point " + std::to_string(i) + ": on is wrong");
       if (i > 0) expect_place_in_line(tree, i, locations[i], options);
     }
@@ -130,7 +146,8 @@ class AnyQueries {
   }
 
   Bytes& bytes_;
-  const oracle::MeshOf<T>& mesh_;
+  const oracle::MeshOf<T>& whole_;
+  const oracle::MeshOf<T> mesh_;  // what the masks see
   const std::vector<RayOf<T>>& rays_;
   const InsideRule rule_;
   const std::uint32_t max_count_;

@@ -29,9 +29,13 @@ void expect_lists(const Tree& tree, const std::vector<AnyRay>& rays, const Expec
   const auto crossings = tree.crossings(rays, options);
   static Fence fence(max_queries * sizeof(CrossingCount));
   const std::span<CrossingCount> counts(fence.last<CrossingCount>(rays.size()), rays.size());
-  tree.count_crossings(
-      rays, counts,
-      {.facing = options.facing, .path = options.path, .threads = options.threads, .skip = options.skip});
+  tree.count_crossings(rays, counts,
+                       {.facing = options.facing,
+                        .path = options.path,
+                        .threads = options.threads,
+                        .skip = options.skip,
+                        .mask = options.mask,
+                        .masks = options.masks});
   fence.expect_intact("counts");
   // Many rays of floats go together.
   constexpr std::size_t together = std::is_same_v<T, float> ? 1100 : 0;
@@ -68,21 +72,23 @@ void expect_lists(const Tree& tree, const std::vector<AnyRay>& rays, const Expec
 }
 
 // All layers, one after the other, in place.
-template <class Tree, class AnyRay, class T = std::remove_const_t<decltype(AnyRay::tmin)>>
+template <class Tree, class AnyRay, class Options, class T = std::remove_const_t<decltype(AnyRay::tmin)>>
 void expect_hits_after(const Tree& tree, const std::vector<AnyRay>& rays, const ExpectedLists<T>& expected,
-                       const Path* path, Facing facing, const PrimitiveView& skip) {
+                       Options options) {
   static Fence fence(max_queries * sizeof(HitOf<T>));
   const std::span<HitOf<T>> hits(fence.last<HitOf<T>>(rays.size()), rays.size());
   std::fill(hits.begin(), hits.end(), HitOf<T>{-std::numeric_limits<T>::infinity(), 0, 0, 0});
   bool some = true;
   for (std::size_t layer = 0; some; ++layer) {
-    tree.closest(rays, hits, {.path = path, .facing = facing, .skip = skip, .after = hits});
+    options.after = hits;
+    tree.closest(rays, hits, options);
     fence.expect_intact("next hits");
     some = false;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const HitOf<T> wanted = layer < expected.hits[i].size() ? expected.hits[i][layer] : HitOf<T>();
       if (!same_bytes(wanted, hits[i]))
-        fail(std::string(path->name) + ": ray " + std::to_string(i) + ": next hit " + std::to_string(layer));
+        fail(std::string(options.path->name) + ": ray " + std::to_string(i) + ": next hit " +
+             std::to_string(layer));
       some = some || hits[i];
     }
   }

@@ -105,6 +105,7 @@ void replace_from_lists(const Source& rays, const HitRecords<AnyHit>& hits, cons
 template <class Options>
 ListOptions options_of_lists(const Options& by, std::uint32_t most) {
   ListOptions options{.max_count = most, .facing = by.facing, .path = by.path, .threads = by.threads};
+  if constexpr (requires { by.masks; }) options.mask = by.mask, options.masks = by.masks;
   if constexpr (requires { by.counters; }) options.counters = by.counters;
   return options;
 }

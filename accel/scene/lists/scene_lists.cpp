@@ -19,7 +19,8 @@ struct SceneListCall {
                                     .threads = options.threads,
                                     .facing = options.facing,
                                     .skip = options.skip,
-                                    .mask = options.mask})),
+                                    .mask = options.mask,
+                                    .masks = options.masks})),
         common(quick_tree(scene, options.mask)) {}
 };
 

@@ -16,6 +16,9 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options) {
   if (options.skip.first != nullptr && options.skip.to_instance == 0)
     throw std::invalid_argument(
         "scene: skip takes hits in scenes, which name an instance besides the primitive");
+  if (!options.masks.empty())
+    throw std::invalid_argument(
+        "scene: masks are of the triangles of one tree; instances have masks of their own");
   if (options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)

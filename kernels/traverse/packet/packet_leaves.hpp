@@ -17,13 +17,13 @@ inline constexpr bool packets_choose = screens<Test>&& std::is_same_v<Counters, 
 template <class Test, bool only_decides, class Counters>
 [[gnu::noinline]] void trace_others(const TreeView& tree, const TraceBatch& batch) {
   if constexpr (packets_choose<Test, Counters>)
-    if (batch.chosen != nullptr) {
+    if (batch.by_rule != nullptr) {
       for (std::size_t i = 0; i < batch.size; ++i) {
         const std::uint32_t skipped = skipped_by(batch, i);
         if constexpr (only_decides)
-          batch.occluded[i] = batch.chosen->any(tree, batch.rays[i], batch.facing, skipped) ? 1 : 0;
+          batch.occluded[i] = batch.by_rule->any(tree, batch.rays[i], batch.facing, skipped) ? 1 : 0;
         else
-          batch.hits[i] = batch.chosen->closest(tree, batch.rays[i], batch.facing, skipped);
+          batch.hits[i] = batch.by_rule->closest(tree, batch.rays[i], batch.facing, skipped);
       }
       return;
     }
@@ -81,7 +81,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   [[gnu::noinline, gnu::flatten]] void trace_rays(const StackEntry& at) {
     this->each_single(at, [this](const TreeView& below, int row, int lane) {
       if constexpr (chooses)
-        if (batch_.chosen != nullptr) return trace_by_rule(below, row, lane);
+        if (batch_.by_rule != nullptr) return trace_by_rule(below, row, lane);
       Counters cost = counters();
       const Ray& ray = ray_of(row, lane);
       if constexpr (only_decides) {
@@ -109,11 +109,13 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
   static std::uint32_t front_of(const Triangles& triangles) {
     return apex == SharedApex::end ? triangles.away : ~triangles.away;
   }
-  // The active rays that do not skip a triangle.
+  // The active rays for which a triangle is there.
   std::uint32_t rays_for(const Leaf& leaf, int triangle, int row) const {
-    if constexpr (chooses)
+    if constexpr (chooses) {
+      if (!tree_.masks.see_all() && !tree_.masks.see(leaf.block.primitive[triangle])) return 0;
       if (batch_.skip != nullptr)
         return rays_.active[row] & ~rays_.rays_that_skip(row, leaf.block.primitive[triangle]);
+    }
     return rays_.active[row];
   }
   // Leaves the lanes that are hit on a side that counts, of certain hits.
@@ -126,11 +128,11 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     const Ray& ray = ray_of(row, lane);
     const std::uint32_t skipped = batch_.skip != nullptr ? rays_.skipped[row][lane] : no_primitive;
     if constexpr (only_decides) {
-      if (batch_.chosen->any(below, ray, batch_.facing, skipped)) rays_.active[row] &= ~(1u << lane);
+      if (batch_.by_rule->any(below, ray, batch_.facing, skipped)) rays_.active[row] &= ~(1u << lane);
     } else {
       const Candidate so_far = rays_.query(row, lane);
       NearestSoFar best{so_far.t_lo, so_far.tmax, so_far.leaf_triangle};
-      batch_.chosen->nearer(below, ray, best, batch_.facing, skipped);
+      batch_.by_rule->nearer(below, ray, best, batch_.facing, skipped);
       rays_.keep(row, lane, Candidate(best.t_lo, best.tmax, best.leaf_triangle));
     }
   }

@@ -12,6 +12,7 @@
 #include "../../traverse/reference/in_flight.hpp"
 #include "../../traverse/reference/reference_tracer.hpp"
 #include "../../traverse/reference/segment_to.hpp"
+#include "../any_masks.hpp"
 #include "../any_mesh.hpp"
 #include "../fence.hpp"
 #include "../strided.hpp"
@@ -276,6 +277,10 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
     for (std::size_t i = 0; i < n; ++i)
       skip.push_back(bytes.chance(32) ? no_primitive
                                       : static_cast<std::uint32_t>(bytes.below(mesh.triangles.size() + 1)));
+  const std::span<const std::uint32_t> masks = options.test == TriangleTest::exact
+                                                   ? any_masks(bytes, mesh.triangles.size())
+                                                   : std::span<const std::uint32_t>();
+  const auto mask = static_cast<std::uint32_t>(bytes.below(8));
   std::vector<Hit> hits, single(n);
   {
     const Rounding rounding(flush);
@@ -283,7 +288,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
       if constexpr (std::is_same_v<decltype(tree), Bvh>) bytes.chance(128) ? let_rays_fly(tree) : void();
       const RayView view(ray_view.first, n, ray_view.stride);
       TraceOptions chosen = options;
-      chosen.skip = skip;
+      chosen.skip = skip, chosen.mask = mask, chosen.masks = masks;
       tree.closest(view, HitView(hit_view.first, n, hit_view.stride), chosen);
       tree.occluded(view, occluded, chosen);
       if (n > 0) expect_segments(tree, rays, {coordinates(), coordinates()}, options);
@@ -314,6 +319,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   occluded_fence.expect_intact("occluded");
 
   const bool is_exact = options.test == TriangleTest::exact;
+  const auto seen = seen_by(mesh, masks, mask);
   // Rational numbers take long: of many rays they judge some.
   const std::size_t compared_apart = many ? 1 + n * (1 + mesh.triangles.size() / 100) / usual_rays : 1;
   const bool promised =
@@ -332,7 +338,7 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
            std::to_string(occluded[i]));
     if (!promised || i % compared_apart != 0) continue;
     const Truth truth =
-        is_exact ? exact_truth(rays[i], mesh, flush, options.facing, skip.empty() ? no_primitive : skip[i])
+        is_exact ? exact_truth(rays[i], seen, flush, options.facing, skip.empty() ? no_primitive : skip[i])
                  : canonical_truth(rays[i], mesh);
     if (!truth.comparable) continue;
     if (!same_bytes(truth.hit, hits[i]))

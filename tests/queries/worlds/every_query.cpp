@@ -1,28 +1,37 @@
-// Every query of rays, of all triangles, of one side of them, and of all but one for each ray: rational numbers say
+// Every query of rays: of all triangles, of one side, by masks, and of all but one for each ray. Rational numbers say
 // what each returns, on every tree of floats and of doubles, on every path and in every mode, of many rays and alone.
 #include "../../oracles/closest_crossing_oracle.hpp"
 #include "../../oracles/peeled.hpp"
 #include "../../support/filtered.hpp"
 #include "../../traverse/reference/in_flight.hpp"
 #include "../../traverse/reference/traced.hpp"
+#include "../masked_mesh.hpp"
 #include "worlds.hpp"
 
 namespace raylanes::testing {
 namespace {
 
+// Words of triangles for a mask of 6: a third is not there, the last eighth has none.
+std::vector<std::uint32_t> some_masks(std::size_t triangles) {
+  std::vector<std::uint32_t> masks(triangles - triangles / 8);
+  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = i % 3 == 0 ? 9 : i % 3 == 1 ? 2 : 5;
+  return masks;
+}
+constexpr std::uint32_t seeing = 6;
 // The results of rays for which some triangles are there.
 template <class T>
 struct Expected {
   Facing facing;
-  std::vector<std::uint32_t> skip;
+  std::vector<std::uint32_t> skip, masks;
   std::vector<std::vector<HitOf<T>>> hits, closest_crossings;
   std::vector<std::vector<CrossingOf<T>>> crossings;
   std::vector<std::uint8_t> occluded;
   std::vector<CrossingCount> counts;
 
-  Expected(const MeshOf<T>& mesh, const std::vector<RayOf<T>>& rays, Facing side,
-           std::vector<std::uint32_t> skipped = {})
-      : facing(side), skip(std::move(skipped)) {
+  Expected(const MeshOf<T>& of_all, const std::vector<RayOf<T>>& rays, Facing side,
+           std::vector<std::uint32_t> skipped = {}, std::vector<std::uint32_t> masked = {})
+      : facing(side), skip(std::move(skipped)), masks(std::move(masked)) {
+    const MeshOf<T> mesh = seen_by(of_all, masks, seeing);
     for (const RayOf<T>& ray : rays) {
       const std::uint32_t without = skip.empty() ? no_primitive : skip[hits.size()];
       const auto is_skipped = [&](const auto& at) { return at.primitive == without; };
@@ -68,6 +77,7 @@ void expect_nearest(const Tree& tree, const std::vector<RayOf<T>>& rays, const E
   const std::vector<std::uint32_t> skip =
       expected.skip.empty() ? expected.skip : repeated(expected.skip, rays.size());
   options.facing = expected.facing, options.skip = skip;
+  options.mask = seeing, options.masks = expected.masks;
   const auto expect = [&] {
     std::vector<HitOf<T>> hits(rays.size());
     std::vector<std::uint8_t> occluded(rays.size(), 7);
@@ -100,6 +110,7 @@ void expect_calls(const Tree& tree, const std::vector<RayOf<T>>& rays, const Exp
                   const Path* path) {
   for (std::size_t i = 0; i < rays.size(); i += 3) {
     TraceOptionsOf<T> options{.path = path, .facing = expected.facing};
+    options.mask = seeing, options.masks = expected.masks;
     if (!expected.skip.empty()) options.skip = expected.skip[i];
     const HitOf<T> wanted = expected.nearest(i);
     EXPECT_TRUE(same_bytes(tree.closest(rays[i], options), wanted)) << "ray " << i;
@@ -113,7 +124,12 @@ void expect_lists(const Tree& tree, const std::vector<RayOf<T>>& rays, const Exp
   const std::vector<std::uint32_t> skip =
       expected.skip.empty() ? expected.skip : repeated(expected.skip, rays.size());
   for (const std::uint32_t most : {~0u, 0u, 2u, 65u}) {
-    const ListOptions options{.max_count = most, .facing = expected.facing, .path = path, .skip = skip};
+    const ListOptions options{.max_count = most,
+                              .facing = expected.facing,
+                              .path = path,
+                              .skip = skip,
+                              .mask = seeing,
+                              .masks = expected.masks};
     const auto all = tree.all_hits(rays, options);
     const auto crossed = tree.crossings(rays, options);
     std::vector<CrossingCount> counts(rays.size());
@@ -138,6 +154,7 @@ template <class T, class Tree>
 void expect_after(const Tree& tree, const std::vector<RayOf<T>>& rays, const Expected<T>& expected,
                   TraceOptionsOf<T> options) {
   options.facing = expected.facing, options.skip = expected.skip;
+  options.mask = seeing, options.masks = expected.masks;
   expect_peeled(rays, expected.hits, options, hits_of(tree, rays, expected.skip));
   expect_peeled(rays, expected.closest_crossings, options, closest_crossings_of(tree, rays, expected.skip));
 }
@@ -179,18 +196,21 @@ TYPED_TEST(EveryQuery, returns_what_rational_numbers_say) {
     const Expected<T> all(world.mesh, world.rays, Facing::any);
     EXPECT_GT(std::ranges::count(all.occluded, 1), 3) << "the rays are aimed badly";
     const std::vector<std::uint32_t> skip = some_skips(all);
+    const std::vector<std::uint32_t> masks = some_masks(world.mesh.triangles.size());
     const Expected<T> cases[] = {all,
                                  {world.mesh, world.rays, Facing::front},
-                                 {world.mesh, world.rays, Facing::back, skip},
-                                 {world.mesh, world.rays, Facing::any, skip}};
+                                 {world.mesh, world.rays, Facing::back, skip, masks},
+                                 {world.mesh, world.rays, Facing::any, skip},
+                                 {world.mesh, world.rays, Facing::any, {}, masks}};
     for (const Expected<T>& expected : cases) {
-      const bool is_all = expected.facing == Facing::any && expected.skip.empty();
+      const bool is_all = expected.facing == Facing::any && expected.skip.empty() && expected.masks.empty();
       each_tree(world.mesh, [&](const auto& tree, const Path* path) {
         for (const FloatMode mode : float_modes) {
           const bool may_flush = world.may_flush && !quick() && (is_all || std::is_same_v<T, float>);
           if (mode == FloatMode::flush && !may_flush) continue;
           SCOPED_TRACE(std::string(facing_names[static_cast<std::size_t>(expected.facing)]) +
-                       (expected.skip.empty() ? ", " : ", without some, ") + name_of(mode));
+                       (expected.skip.empty() ? ", " : ", without some, ") +
+                       (expected.masks.empty() ? "" : "masked, ") + name_of(mode));
           const FloatModeScope scope(mode);
           expect_all<T>(tree, path, world.rays, expected,
                         expected.facing != Facing::back && by_level(is_all, mode == FloatMode::ieee, true));
@@ -228,13 +248,16 @@ TYPED_TEST(EveryQuery, of_shadows_and_filters) {
     to_points.push_back(segment_to<T>(light, ray.origin));
   }
   const auto skip = some_skips(Expected<T>(world.mesh, to_points, Facing::any));
-  const Expected<T> shadows[] = {{world.mesh, to_points, Facing::front},
-                                 {world.mesh, to_points, Facing::back},
-                                 {world.mesh, to_points, Facing::any, skip}};
+  const Expected<T> shadows[] = {
+      {world.mesh, to_points, Facing::front},
+      {world.mesh, to_points, Facing::back},
+      {world.mesh, to_points, Facing::any, skip},
+      {world.mesh, to_points, Facing::any, {}, some_masks(world.mesh.triangles.size())}};
   for (const Expected<T>& dark : shadows) {
-    const Expected<T> expected(world.mesh, world.rays, dark.facing, dark.skip);
+    const Expected<T> expected(world.mesh, world.rays, dark.facing, dark.skip, dark.masks);
     each_tree(world.mesh, [&](const auto& tree, const Path* path) {
-      const TraceOptionsOf<T> options{.path = path, .facing = dark.facing, .skip = dark.skip};
+      TraceOptionsOf<T> options{.path = path, .facing = dark.facing, .skip = dark.skip};
+      options.mask = seeing, options.masks = dark.masks;
       TraceOptionsOf<T> from_light = options;
       if (dark.facing != Facing::any)
         from_light.facing = dark.facing == Facing::front ? Facing::back : Facing::front;
