@@ -156,7 +156,8 @@ def batches_table(results):
     kinds, paths = results.names('rays'), results.paths()
 
     def cell(key, path, **case):
-        return pair(results.one(path=path, mode='automatic', rays=kind, **case)[key] for kind in kinds)
+        found = [results.where(path=path, mode='automatic', rays=kind, **case) for kind in kinds]
+        return ', '.join(pair([row[key] for row in rows]) or '–' for rows in found)  # scenes with fewer rays
 
     return table(['scene, rays in a call', *(f'{path}: × {rival}' for path in paths
                                              for rival in ('a loop of calls', 'Embree'))],
