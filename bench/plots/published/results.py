@@ -23,9 +23,10 @@ def newest(folder, kind):
 
 
 def newest_of_path(folder, kind, path):
-    """The newest file of this kind that has rows of an ISA path."""
+    """The newest file of this kind that has rows of an ISA path; of one day, the one with most rows."""
     files = [Results(folder, kind, machine) for machine in machines_of(folder, kind)]
-    return max((file for file in files if file.where(path=path)), key=lambda file: file.machine['date'])
+    return max((file for file in files if file.where(path=path)),
+               key=lambda file: (file.machine['date'], len(file.where(path=path))))
 
 
 class Results:
