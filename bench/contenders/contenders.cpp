@@ -55,6 +55,7 @@ Contender our_contender(const TriangleTree& tree, const TraceOptions& given, std
           [&tree, given, batch, skips](const RaySet& set, Answers& answers) {
             const std::span<const Ray> rays(set.rays);
             TraceOptions options = given;
+            if (options.path == &active_path()) options.path = nullptr;
             const std::size_t step = batch == 0 ? rays.size() : batch;
             for (std::size_t i = 0; i < rays.size(); i += step) {
               const std::size_t count = std::min(step, rays.size() - i);

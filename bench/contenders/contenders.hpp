@@ -36,8 +36,8 @@ struct Contender {
   bool is_packed() const { return static_cast<bool>(timed); }
 };
 
-// In calls of `batch` rays each, 0: all at once. With `skips`, rays leave out the triangle that they begin on. The tree
-// must outlive the contender.
+// In calls of `batch` rays each, 0: all at once; on the active path without naming it. With `skips`, rays leave out the
+// triangle that they begin on. The tree must outlive the contender.
 Contender our_contender(const TriangleTree& tree, const TraceOptions& options, std::size_t batch = 0,
                         bool skips = false);
 

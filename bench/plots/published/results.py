@@ -66,7 +66,7 @@ def speeds_by_batch(results, scene, rays, path, mode):
     speeds = {}
     for row in rows:
         speeds[row['batch']] = max(row['mrays_per_second'], speeds.get(row['batch'], 0))
-    sizes = [size for size in sizes if speeds and size >= min(speeds)]
+    sizes = sorted(speeds) if mode == 'automatic' else [size for size in sizes if speeds and size >= min(speeds)]
     return sizes, [speeds[max(batch for batch in speeds if batch <= size)] for size in sizes]
 
 
