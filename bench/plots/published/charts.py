@@ -212,7 +212,7 @@ def batches_chart(results):
     figure, panels = plot_style.plt.subplots(2, 3, figsize=(8.4, 5.4), layout='constrained', sharex=True, sharey='col')
     scene, folder, shown = results.names('scene')[0], results.folder, []
     lines = {'raylanes': 'automatic', 'raylanes, a loop of calls': 'call', 'Embree, single rays': 'single',
-             'packets of 8': 'packet8', 'packets of 16': 'packet16', 'streams of these': 'packet_stream'}
+             'packets of 8': 'packet8', 'packets of 16': 'packet16', 'streams of packets': 'packet_stream'}
     for row_of_panels, path in zip(panels, TWO_PATHS):
         results = newest_of_path(folder, 'batches', path)
         for axes, rays in zip(row_of_panels, ('primary', 'shadow', 'diffuse')):
