@@ -147,22 +147,15 @@ class Walk {
     }
   }
 
-  // The cells of particles that turned: the innermost solid that the new ray leaves and did not enter.
+  // The cells of particles that turned: where they turned was rounded, perhaps into another cell.
   void ask_cells(const std::vector<std::size_t>& turned) {
-    std::vector<raylanes::Ray> rays;
-    for (const std::size_t i : turned) rays.push_back(rays_[i]);
-    const auto lists = model_.scene.crossings(rays, {.threads = 0});
+    std::vector<Float3> points;
+    for (const std::size_t i : turned) points.push_back(rays_[i].origin);
+    std::vector<raylanes::ContainingPart> parts(turned.size());
+    model_.scene.innermost_parts(points, parts, {.threads = 0});
     for (std::size_t k = 0; k < turned.size(); ++k) {
-      std::vector<std::uint32_t> entered;
-      cells_[turned[k]] = Model::none;
-      for (const raylanes::SceneCrossing& crossing : lists[k])
-        if (crossing.side < 0) {
-          entered.push_back(crossing.instance);
-        } else if (std::ranges::find(entered, crossing.instance) == entered.end()) {
-          cells_[turned[k]] = crossing.instance;
-          break;
-        }
-      if (cells_[turned[k]] == Model::none) begin(turned[k]);
+      cells_[turned[k]] = parts[k].instance;
+      if (!parts[k]) begin(turned[k]);
     }
   }
 

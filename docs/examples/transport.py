@@ -117,14 +117,8 @@ class Walk:
             self.last[i] = crossings
 
     def ask_cells(self, turned):
-        """The cells of particles that turned: the innermost solid that the new ray leaves and did not enter."""
-        lists = self.model.scene.crossings(self.rays[turned])
-        winding = np.zeros((len(turned), len(self.model.parent)), int)
-        np.add.at(winding, (lists.ray, lists.items.instance), lists.items.side)
-        is_left = (lists.items.side > 0) & (winding[lists.ray, lists.items.instance] > 0)
-        here, first = np.unique(lists.ray[is_left], return_index=True)
-        self.cells[turned] = none
-        self.cells[turned[here]] = lists.items.instance[is_left][first]
+        """The cells of particles that turned: where they turned was rounded, perhaps into another cell."""
+        self.cells[turned] = self.model.scene.innermost_parts(self.rays["origin"][turned]).instance
         self.begin(turned[self.cells[turned] == none])
 
 
