@@ -49,7 +49,9 @@ raylanes_point_options point_defaults() {
           .max_distance = options.max_distance,
           .accuracy = WindingOptions().accuracy,
           .progress = nullptr,
-          .progress_context = nullptr};
+          .progress_context = nullptr,
+          .mask = ListOptions().mask,
+          .unused = 0};
 }
 
 void require_options_size(std::size_t size, std::size_t known) {

@@ -126,6 +126,7 @@ class PointOptions {
     if constexpr (requires { options_.max_distance; })
       options_.max_distance = static_cast<decltype(options_.max_distance)>(c.max_distance);
     if constexpr (requires { options_.accuracy; }) options_.accuracy = c.accuracy;
+    if constexpr (requires { options_.mask; }) options_.mask = c.mask;
   }
   PointOptions(const PointOptions&) = delete;
   PointOptions& operator=(const PointOptions&) = delete;

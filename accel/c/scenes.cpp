@@ -7,6 +7,9 @@ namespace raylanes::c::of_scenes {
 
 using Number = float;
 using Tree = Scene;
+using AnyClosestPoint = SceneClosestPoint;
+using ClosestOptions = ClosestPointOptions;
+using DistanceOptions = SignedDistanceOptions;
 constexpr const char* kind = "scene";
 
 }  // namespace raylanes::c::of_scenes
@@ -15,8 +18,10 @@ constexpr const char* kind = "scene";
 #define RAYLANES_CALL(of_floats, of_doubles, of_scene) of_scene
 #define RAYLANES_RAY raylanes_ray
 #define RAYLANES_HIT raylanes_scene_hit
+#define RAYLANES_CLOSEST raylanes_scene_closest_point
 #define RAYLANES_NUMBERS of_scenes
 #include "object_calls.hpp"
+#include "object_points.hpp"
 
 namespace raylanes::c::of_scenes {
 namespace {
@@ -61,6 +66,20 @@ raylanes_status tell(const char* what, T* to, const Find& find) {
   });
 }
 
+// The primitives and instances of hits in scenes. No hits may be NULL.
+PrimitiveView named_by(const void* hits, std::size_t count, std::size_t stride) {
+  const std::size_t apart = checked_stride("hits", hits, count, stride, sizeof(SceneHit));
+  return SceneHitView(const_cast<void*>(hits), count, apart);
+}
+
+// Floats of records, side by side.
+template <class Record>
+std::span<Record> records_of(const char* what, float* first, std::size_t count) {
+  checked_stride(what, first, count, 0, sizeof(Record));
+  require_alignment(what, first, alignof(Record));
+  return {reinterpret_cast<Record*>(first), count};
+}
+
 static_assert(sizeof(Sphere) == sizeof(raylanes_sphere) && sizeof(Box) == 6 * sizeof(float));
 static_assert(sizeof(Transform) == 12 * sizeof(float));
 static_assert(sizeof(SceneReport) == sizeof(raylanes_scene_report));
@@ -89,10 +108,9 @@ raylanes_status raylanes_scene_add_mesh(raylanes_scene* scene, const void* verti
                                         std::size_t triangle_count, std::size_t triangle_stride,
                                         const raylanes_build_options* options, std::uint32_t* geometry) {
   return tell("geometry", geometry, [&] {
-    BuildOptions by = build_options(options);
-    by.progress = {};  // which the scene would keep
     return changed(scene).add(vertices_of("vertices", vertices, vertex_count, vertex_stride),
-                              triangles_of(triangles, triangle_count, triangle_stride), by);
+                              triangles_of(triangles, triangle_count, triangle_stride),
+                              build_options(options));
   });
 }
 
@@ -213,15 +231,37 @@ raylanes_status raylanes_scene_describe(const raylanes_scene* scene, raylanes_sc
 raylanes_status raylanes_scene_normals(const raylanes_scene* scene, const void* hits, std::size_t n,
                                        std::size_t hit_stride, float* normals, std::int32_t threads) {
   return status_of([&] {
-    const Scene& asked = object_of(scene);
-    const std::size_t apart = checked_stride("hits", hits, n, hit_stride, sizeof(SceneHit));
-    checked_stride("normals", normals, n, 0, sizeof(Float3));
-    require_alignment("normals", normals, alignof(Float3));
-    // No hits may be NULL.
-    const std::byte nothing{};
-    const auto* const first = hits != nullptr ? static_cast<const std::byte*>(hits) : &nothing;
-    asked.normals({first + (n > 0 ? offsetof(SceneHit, primitive) : 0), n, apart, to_instance_of_hits},
-                  {reinterpret_cast<Float3*>(normals), n}, threads);
+    object_of(scene).normals(named_by(hits, n, hit_stride), records_of<Float3>("normals", normals, n),
+                             threads);
+  });
+}
+
+raylanes_status raylanes_scene_corners(const raylanes_scene* scene, const void* hits, std::size_t n,
+                                       std::size_t hit_stride, float* corners, std::int32_t threads) {
+  return status_of([&] {
+    object_of(scene).corners(named_by(hits, n, hit_stride), records_of<Triangle>("corners", corners, n),
+                             threads);
+  });
+}
+
+raylanes_status raylanes_scene_innermost_parts(const raylanes_scene* scene, const void* points, std::size_t n,
+                                               std::size_t stride, raylanes_containing_part* parts,
+                                               const raylanes_point_options* options) {
+  return status_of([&] {
+    object_of(scene).innermost_parts(vertices_of("points", points, n, stride),
+                                     span_of<ContainingPart>("parts", parts, n),
+                                     *PointOptions<LocateOptions>(options));
+  });
+}
+
+raylanes_status raylanes_scene_containing_parts(const raylanes_scene* scene, const void* points,
+                                                std::size_t n, std::size_t stride, raylanes_lists** lists,
+                                                const raylanes_point_options* options) {
+  return status_of([&] {
+    make("lists", lists, [&] {
+      return lists_of(object_of(scene).containing_parts(vertices_of("points", points, n, stride),
+                                                        *PointOptions<LocateOptions>(options)));
+    });
   });
 }
 

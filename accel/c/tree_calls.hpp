@@ -1,8 +1,7 @@
-// The functions of one kind of tree alone: builds, and prepared calls. Behind object_calls.hpp, by its macros and:
+// The functions of one kind of tree alone: builds, prepared calls, corners. Behind object_calls.hpp, by its macros and:
 //   RAYLANES_CALLS         the handle of prepared calls: raylanes_bvh_calls
 //   RAYLANES_TREE_CALL(of_floats, of_doubles)  a function, one of these
-//   RAYLANES_RECORD(name)  a record: raylanes_closest_point
-//   RAYLANES_OPTIONS(name) a type of C++: ClosestPointOptions
+// The namespace also has the type CornersOfTriangle: Triangle.
 
 struct RAYLANES_CALLS {
   decltype(std::declval<raylanes::c::RAYLANES_NUMBERS::Tree&>().calls()) calls;
@@ -10,6 +9,8 @@ struct RAYLANES_CALLS {
 
 namespace raylanes::c::RAYLANES_NUMBERS {
 namespace {
+
+static_assert(sizeof(CornersOfTriangle) == 9 * sizeof(Number));
 
 const auto& calls_of(const RAYLANES_CALLS* handle) {
   require_pointer("calls", handle);
@@ -85,6 +86,19 @@ raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_calls_occluded,
     const auto one = ray_of(ray);
     require_pointer("occluded", occluded);
     *occluded = calls_of(calls).occluded(one);
+  });
+}
+
+raylanes_status RAYLANES_TREE_CALL(raylanes_bvh_corners,
+                                   raylanes_bvhd_corners)(const RAYLANES_HANDLE* tree, const void* primitives,
+                                                          std::size_t n, std::size_t stride,
+                                                          Number* corners) {
+  return status_of([&] {
+    const Tree& asked = object_of(tree);
+    const std::size_t apart = checked_stride("primitives", primitives, n, stride, sizeof(std::uint32_t));
+    checked_stride("corners", corners, n, 0, sizeof(CornersOfTriangle));
+    require_alignment("corners", corners, alignof(CornersOfTriangle));
+    asked.corners({primitives, n, apart}, {reinterpret_cast<CornersOfTriangle*>(corners), n});
   });
 }
 

@@ -9,6 +9,10 @@ namespace of_floats {
 
 using Number = float;
 using Tree = Bvh;
+using AnyClosestPoint = ClosestPoint;
+using ClosestOptions = ClosestPointOptions;
+using DistanceOptions = SignedDistanceOptions;
+using CornersOfTriangle = Triangle;
 constexpr const char* kind = "tree";
 
 }  // namespace of_floats
@@ -16,6 +20,10 @@ namespace of_doubles {
 
 using Number = double;
 using Tree = BvhD;
+using AnyClosestPoint = ClosestPointD;
+using ClosestOptions = ClosestPointOptionsD;
+using DistanceOptions = SignedDistanceOptionsD;
+using CornersOfTriangle = TriangleD;
 constexpr const char* kind = "tree";
 
 }  // namespace of_doubles
@@ -27,20 +35,18 @@ constexpr const char* kind = "tree";
 #define RAYLANES_TREE_CALL(of_floats, of_doubles) of_floats
 #define RAYLANES_RAY raylanes_ray
 #define RAYLANES_HIT raylanes_hit
-#define RAYLANES_RECORD(name) raylanes_##name
-#define RAYLANES_OPTIONS(name) name
+#define RAYLANES_CLOSEST raylanes_closest_point
 #define RAYLANES_NUMBERS of_floats
 #include "object_calls.hpp"
+#include "object_points.hpp"
 #include "tree_calls.hpp"
-#include "tree_points.hpp"
 #undef RAYLANES_HANDLE
 #undef RAYLANES_CALLS
 #undef RAYLANES_CALL
 #undef RAYLANES_TREE_CALL
 #undef RAYLANES_RAY
 #undef RAYLANES_HIT
-#undef RAYLANES_RECORD
-#undef RAYLANES_OPTIONS
+#undef RAYLANES_CLOSEST
 #undef RAYLANES_NUMBERS
 
 #define RAYLANES_HANDLE raylanes_bvhd
@@ -49,9 +55,8 @@ constexpr const char* kind = "tree";
 #define RAYLANES_TREE_CALL(of_floats, of_doubles) of_doubles
 #define RAYLANES_RAY raylanes_rayd
 #define RAYLANES_HIT raylanes_hitd
-#define RAYLANES_RECORD(name) raylanes_##name##d
-#define RAYLANES_OPTIONS(name) name##D
+#define RAYLANES_CLOSEST raylanes_closest_pointd
 #define RAYLANES_NUMBERS of_doubles
 #include "object_calls.hpp"
+#include "object_points.hpp"
 #include "tree_calls.hpp"
-#include "tree_points.hpp"

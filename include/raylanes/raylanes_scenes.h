@@ -157,6 +157,38 @@ RAYLANES_STATUS raylanes_scene_stretches(const raylanes_scene* scene, const void
 /// primitives than triangles. Visits all leaves of the geometries that are hit.
 RAYLANES_STATUS raylanes_scene_normals(const raylanes_scene* scene, const void* hits, size_t n,
                                        size_t hit_stride, float* normals, int32_t threads);
+/// Writes the corners in the scene of the triangle of each raylanes_scene_hit: nine floats, NaN for misses and for hits
+/// of other primitives than triangles.
+RAYLANES_STATUS raylanes_scene_corners(const raylanes_scene* scene, const void* hits, size_t n,
+                                       size_t hit_stride, float* corners, int32_t threads);
+
+// Queries of points, three floats each, with the options of trees and `mask`. All instances that the mask sees must
+// consist of triangles. Each instance decides in its own space, where points go as rays do.
+
+/// Finds the closest point of the instances for each point. <raylanes/scene_hit.hpp> has the error bound.
+RAYLANES_STATUS raylanes_scene_closest_points(const raylanes_scene* scene, const void* points, size_t n,
+                                              size_t stride, raylanes_scene_closest_point* closest,
+                                              const raylanes_point_options* options);
+/// Finds out whether each point is inside an instance, on the surface of one and inside none, or outside all.
+RAYLANES_STATUS raylanes_scene_locate(const raylanes_scene* scene, const void* points, size_t n,
+                                      size_t stride, uint8_t* locations,
+                                      const raylanes_point_options* options);
+/// Computes how far each point is from the nearest surface of an instance, negative inside an instance.
+RAYLANES_STATUS raylanes_scene_signed_distances(const raylanes_scene* scene, const void* points, size_t n,
+                                                size_t stride, float* distances,
+                                                const raylanes_point_options* options);
+/// Computes the sum of the winding numbers of all instances at each point.
+RAYLANES_STATUS raylanes_scene_winding_numbers(const raylanes_scene* scene, const void* points, size_t n,
+                                               size_t stride, float* numbers,
+                                               const raylanes_point_options* options);
+/// Finds the innermost instance that contains each point: the one of the least volume.
+RAYLANES_STATUS raylanes_scene_innermost_parts(const raylanes_scene* scene, const void* points, size_t n,
+                                               size_t stride, raylanes_containing_part* parts,
+                                               const raylanes_point_options* options);
+/// Finds all instances that contain each point, innermost first: lists of raylanes_containing_part.
+RAYLANES_STATUS raylanes_scene_containing_parts(const raylanes_scene* scene, const void* points, size_t n,
+                                                size_t stride, raylanes_lists** lists,
+                                                const raylanes_point_options* options);
 
 #ifdef __cplusplus
 }

@@ -145,6 +145,19 @@ typedef int32_t (*raylanes_progress)(void* context, double share);
 typedef int32_t (*raylanes_primitive_test)(void* context, uint32_t primitive, const raylanes_ray* ray,
                                            raylanes_hit* hit);
 
+/// The closest point of a scene, in its space. If there is none, distance_squared is infinite.
+typedef struct raylanes_scene_closest_point {
+  double distance_squared;
+  float point[3], u, v;
+  uint32_t primitive, geometry, instance;  ///< as in raylanes_scene_hit
+} raylanes_scene_closest_point;
+
+/// An instance that contains a point. If there is none, RAYLANES_NO_PART and RAYLANES_OUTSIDE.
+typedef struct raylanes_containing_part {
+  uint32_t geometry, instance;
+  uint8_t location;  ///< a raylanes_location: inside the instance, or on its surface
+} raylanes_containing_part;
+
 /// Builders of trees: queries return the same bytes, times differ. Trees of doubles have no spatial splits.
 enum raylanes_builder {
   RAYLANES_BUILDER_MEDIAN = 0,
@@ -238,6 +251,8 @@ typedef struct raylanes_point_options {
   double accuracy;             ///< of winding_numbers: the greatest error of expansions; default 1e-6
   raylanes_progress progress;  ///< default NULL
   void* progress_context;
+  uint32_t mask;  ///< in scenes, as in raylanes_ray_options; default all bits
+  uint32_t unused;
 } raylanes_point_options;
 
 #endif

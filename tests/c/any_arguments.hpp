@@ -139,6 +139,7 @@ class AnyArguments {
     points_.max_distance = bytes_.chance(128) ? HUGE_VAL : static_cast<double>(bytes_.number<float>());
     points_.rule = have_rule ? enumerator(4) : static_cast<std::int32_t>(bytes_.word<std::uint32_t>());
     points_.accuracy = bytes_.number<double>();
+    if (bytes_.chance(64)) points_.mask = static_cast<std::uint32_t>(bytes_.below(4));
     if (bytes_.chance(48)) points_.progress = go_on;
     if (have_accuracy && !(points_.accuracy >= 0)) are_right_ = false;
     return given(points_, default_point_options());
@@ -152,6 +153,7 @@ class AnyArguments {
     if constexpr (requires { options.max_distance; })
       options.max_distance = static_cast<decltype(options.max_distance)>(points_.max_distance);
     if constexpr (requires { options.accuracy; }) options.accuracy = points_.accuracy;
+    if constexpr (requires { options.mask; }) options.mask = points_.mask;
     return options;
   }
 

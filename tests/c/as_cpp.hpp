@@ -128,6 +128,8 @@ class CCalls : public ::testing::Test, public Input<Kind> {
           if (variant > 1) c.max_distance = options.max_distance = NumberOfKind<Kind>(variant) / 4;
         if constexpr (requires { options.accuracy; })
           if (variant > 1) c.accuracy = options.accuracy = 0.01 * variant;
+        if constexpr (requires { options.mask; })
+          if (variant == 3) c.mask = options.mask = 2;
         check(c, options);
       }
   }

@@ -33,32 +33,33 @@ struct CallsOf;
   static constexpr auto count_crossings = of##_count_crossings;     \
   static constexpr auto all_hits = of##_all_hits;                   \
   static constexpr auto crossings = of##_crossings;                 \
-  static constexpr auto stretches = of##_stretches
+  static constexpr auto stretches = of##_stretches;                 \
+  static constexpr auto locate = of##_locate;                       \
+  static constexpr auto closest_points = of##_closest_points;       \
+  static constexpr auto signed_distances = of##_signed_distances;   \
+  static constexpr auto winding_numbers = of##_winding_numbers
 // Names of functions and types; for doubles they have a d.
-#define RAYLANES_CALLS_OF(AnyNumber, TreeOfNumber, d, D)                         \
-  template <>                                                                    \
-  struct CallsOf<AnyNumber> {                                                    \
-    using Number = AnyNumber;                                                    \
-    using Tree = TreeOfNumber;                                                   \
-    using Trace = TraceOptions##D;                                               \
-    using Closest = ClosestPointOptions##D;                                      \
-    using Distances = SignedDistanceOptions##D;                                  \
-    using CRay = raylanes_ray##d;                                                \
-    using Corners = Triangle##D;                                                 \
-    using CHit = raylanes_hit##d;                                                \
-    RAYLANES_SHARED_CALLS(raylanes_bvh##d);                                      \
-    static constexpr auto create = raylanes_bvh##d##_create;                     \
-    static constexpr auto refit = raylanes_bvh##d##_refit;                       \
-    using Calls = raylanes_bvh##d##_calls;                                       \
-    static constexpr auto calls_create = raylanes_bvh##d##_calls_create;         \
-    static constexpr auto calls_destroy = raylanes_bvh##d##_calls_destroy;       \
-    static constexpr auto calls_closest = raylanes_bvh##d##_calls_closest;       \
-    static constexpr auto calls_occluded = raylanes_bvh##d##_calls_occluded;     \
-    static constexpr auto corners = raylanes_bvh##d##_corners;                   \
-    static constexpr auto locate = raylanes_bvh##d##_locate;                     \
-    static constexpr auto closest_points = raylanes_bvh##d##_closest_points;     \
-    static constexpr auto signed_distances = raylanes_bvh##d##_signed_distances; \
-    static constexpr auto winding_numbers = raylanes_bvh##d##_winding_numbers;   \
+#define RAYLANES_CALLS_OF(AnyNumber, TreeOfNumber, d, D)                     \
+  template <>                                                                \
+  struct CallsOf<AnyNumber> {                                                \
+    using Number = AnyNumber;                                                \
+    using Tree = TreeOfNumber;                                               \
+    using Trace = TraceOptions##D;                                           \
+    using Closest = ClosestPointOptions##D;                                  \
+    using ClosestPoint = raylanes::ClosestPoint##D;                          \
+    using Distances = SignedDistanceOptions##D;                              \
+    using CRay = raylanes_ray##d;                                            \
+    using Corners = Triangle##D;                                             \
+    using CHit = raylanes_hit##d;                                            \
+    RAYLANES_SHARED_CALLS(raylanes_bvh##d);                                  \
+    static constexpr auto create = raylanes_bvh##d##_create;                 \
+    static constexpr auto refit = raylanes_bvh##d##_refit;                   \
+    using Calls = raylanes_bvh##d##_calls;                                   \
+    static constexpr auto calls_create = raylanes_bvh##d##_calls_create;     \
+    static constexpr auto calls_destroy = raylanes_bvh##d##_calls_destroy;   \
+    static constexpr auto calls_closest = raylanes_bvh##d##_calls_closest;   \
+    static constexpr auto calls_occluded = raylanes_bvh##d##_calls_occluded; \
+    static constexpr auto corners = raylanes_bvh##d##_corners;               \
   }
 RAYLANES_CALLS_OF(float, Bvh, , );
 RAYLANES_CALLS_OF(double, BvhD, d, D);
@@ -67,6 +68,9 @@ struct CallsOf<Scene> {
   using Number = float;
   using Tree = Scene;
   using Trace = TraceOptions;
+  using Closest = ClosestPointOptions;
+  using ClosestPoint = SceneClosestPoint;
+  using Distances = SignedDistanceOptions;
   using CRay = raylanes_ray;
   using CHit = raylanes_scene_hit;
   RAYLANES_SHARED_CALLS(raylanes_scene);

@@ -30,7 +30,7 @@ class Caller {
   }
 
   void ask() {
-    const std::size_t group = bytes_.below(is_tree ? 10 : 7);
+    const std::size_t group = bytes_.below(is_tree ? 10 : 9);
     const auto* const tree = arguments_.pointer(of_c_.get());
     const std::size_t n = arguments_.count(world_.rays.size());
     const void* const from = arguments_.first(rays_);
@@ -47,14 +47,12 @@ class Caller {
                  [&](const auto& query) { ask_lists(query, tree, from, n, stride); });
     else if (group == 6)
       ask_shadows(bytes_.chance(128), tree, from, n, stride);
-    else if constexpr (is_tree) {
-      if (group < 9)
-        some_query(Queries::of_points(), bytes_.below(4), [&](const auto& query) {
-          ask_array(query, point_options<OptionsOf<decltype(query)>>(), points(), tree, from, n, stride);
-        });
-      else
-        ask_corners(tree, from, n, stride);
-    }
+    else if (group < 9)
+      some_query(Queries::of_points(), bytes_.below(4), [&](const auto& query) {
+        ask_array(query, point_options<OptionsOf<decltype(query)>>(), points(), tree, from, n, stride);
+      });
+    else if constexpr (is_tree)
+      ask_corners(tree, from, n, stride);
     rays_.expect_intact("rays");
   }
 

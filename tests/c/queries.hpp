@@ -70,7 +70,7 @@ struct QueriesOf {
                                                     RAYLANES_METHOD(winding_numbers)),
                       query<Number, typename C::Distances>("distances", dense(C::signed_distances),
                                                            RAYLANES_METHOD(signed_distances)),
-                      query<ClosestPointOf<Number>, typename C::Closest>(
+                      query<typename C::ClosestPoint, typename C::Closest>(
                           "closest_points", dense(C::closest_points), RAYLANES_METHOD(closest_points)));
   }
   // Lists are made, not written.

@@ -121,6 +121,21 @@ TYPED_TEST(CCalls, make_the_lists_of_the_classes) {
   });
 }
 
+TYPED_TEST(CCalls, look_up_the_points_of_the_classes) {
+  each_query(QueriesOf<TypeParam>::of_points(), [&](const auto& query) {
+    using Query = std::decay_t<decltype(query)>;
+    this->template each_point_option<typename Query::Options>([&](const auto& c, const auto& options) {
+      this->template expect_same<typename Query::Result>(
+          query.name, 0,
+          [&](auto& to) {
+            return query.of_c(this->c_tree.get(), this->rays_of_c.data(), count, this->rays_of_c.stride(),
+                              to.data(), 0, &c);
+          },
+          [&](auto& to) { query.of_cpp(this->cpp_tree, this->points(), to, options); });
+    });
+  });
+}
+
 TYPED_TEST(CCalls, ask_the_filters_of_the_classes) {
   using C = CallsOf<TypeParam>;
   using Hit = HitOfKind<TypeParam>;

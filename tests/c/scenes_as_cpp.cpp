@@ -64,6 +64,34 @@ TEST_F(CScenes, follow_changes_of_the_class) {
         return raylanes_scene_normals(scene, hits.data(), count, 0, static_cast<float*>(normals.data()), 2);
       },
       [&](auto& normals) { cpp_tree.normals(hits, normals); });
+  expect_same<Triangle>(
+      "corners", 0,
+      [&](auto& corners) {
+        return raylanes_scene_corners(scene, hits.data(), count, 0, static_cast<float*>(corners.data()), 2);
+      },
+      [&](auto& corners) { cpp_tree.corners(hits, corners); });
+}
+
+TEST_F(CScenes, know_the_parts_that_the_class_knows) {
+  std::size_t found = 0;
+  each_point_option<LocateOptions>([&](const auto& c, const auto& by) {
+    const auto from = points();
+    Apart<ContainingPart> parts(count);
+    void* const to = parts.data();
+    ASSERT_EQ(raylanes_scene_innermost_parts(c_tree.get(), from.first, count, from.stride,
+                                             static_cast<raylanes_containing_part*>(to), &c),
+              RAYLANES_OK);
+    std::vector<ContainingPart> expected(count);
+    cpp_tree.innermost_parts(from, expected, by);
+    EXPECT_TRUE(parts.values() == expected);
+    const auto lists = made<ListsOfC>([&](raylanes_lists** address) {
+      raylanes_scene_containing_parts(c_tree.get(), from.first, count, from.stride, address, &c);
+    });
+    const auto all = cpp_tree.containing_parts(from, by);
+    expect_lists(lists, all);
+    found += all.items.size();
+  });
+  EXPECT_GT(found, 0u);
 }
 
 // A square in the middle of a box, to see through from one side.

@@ -1,6 +1,5 @@
-// Trees of C beside the classes: points, corners, builds, refits and files.
+// Trees of C beside the classes: corners, builds, refits and files.
 #include "as_cpp.hpp"
-#include "queries.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -9,21 +8,6 @@ template <class Kind>
 class CTrees : public CCalls<Kind> {};
 using Numbers = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(CTrees, Numbers);
-
-TYPED_TEST(CTrees, look_up_the_points_of_the_classes) {
-  each_query(QueriesOf<TypeParam>::of_points(), [&](const auto& query) {
-    using Query = std::decay_t<decltype(query)>;
-    this->template each_point_option<typename Query::Options>([&](const auto& c, const auto& options) {
-      this->template expect_same<typename Query::Result>(
-          query.name, 0,
-          [&](auto& to) {
-            return query.of_c(this->c_tree.get(), this->rays_of_c.data(), count, this->rays_of_c.stride(),
-                              to.data(), 0, &c);
-          },
-          [&](auto& to) { query.of_cpp(this->cpp_tree, this->points(), to, options); });
-    });
-  });
-}
 
 TYPED_TEST(CTrees, write_the_corners_of_the_classes) {
   using C = CallsOf<TypeParam>;

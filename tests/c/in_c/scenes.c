@@ -7,13 +7,16 @@
 #define RECORD_hit raylanes_scene_hit
 #define RECORD_crossing raylanes_scene_crossing
 #define RECORD_stretch raylanes_scene_stretch
+#define RECORD_closest_point raylanes_scene_closest_point
 #define KIND "scene"
 #define ANOTHER_LOAD raylanes_bvh_load
 #define ANOTHER_TREE raylanes_bvh
 #include "tetrahedron.h"
 #include "tree_files.h"
+#include "tree_points.h"
 #include "tree_queries.h"
 #include "tree_refused.h"
+#include "tree_refused_points.h"
 
 static const float up_by_4[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 4};
 static const uint32_t every_bit = 0xffffffff;
@@ -179,6 +182,51 @@ static void test_other_primitives(void) {
   raylanes_scene_destroy(scene);
 }
 
+// A tetrahedron within one of four times its size.
+static void test_parts(void) {
+  static const float around[12] = {4, 0, 0, -0.75f, 0, 4, 0, -0.75f, 0, 0, 4, -0.75f};
+  static const float places[9] = {0.125f, 0.125f, 0.125f, -0.5f, 0, 0, 9, 9, 9};
+  raylanes_scene* const scene = scene_of_tetrahedron();
+  raylanes_point_options options = point_options();
+  raylanes_containing_part parts[3];
+  const raylanes_containing_part* items;
+  raylanes_lists* lists = NULL;
+  raylanes_scene_hit hit;
+  float three[9];
+  uint32_t instance;
+  GOOD(raylanes_scene_place(scene, 0, around, 2, &instance));
+  GOOD(raylanes_scene_update(scene, 1));
+  GOOD(raylanes_scene_innermost_parts(scene, places, 3, 0, parts, NULL));
+  EXPECT(parts[0].instance == 0 && parts[0].location == RAYLANES_INSIDE && parts[1].instance == 1);
+  EXPECT(parts[2].instance == RAYLANES_NO_PART && parts[2].location == RAYLANES_OUTSIDE);
+  GOOD(raylanes_scene_set_mask(scene, 0, 1));
+  options.mask = 2;
+  GOOD(raylanes_scene_innermost_parts(scene, places, 1, 0, parts, &options));
+  EXPECT(parts[0].instance == 1 && parts[0].geometry == 0);
+  GOOD(raylanes_scene_containing_parts(scene, places, 3, 0, &lists, NULL));
+  items = raylanes_lists_items(lists);
+  EXPECT(raylanes_lists_offsets(lists)[1] == 2 && raylanes_lists_offsets(lists)[3] == 3);
+  EXPECT(items[0].instance == 0 && items[1].instance == 1 && items[2].instance == 1);
+  raylanes_lists_destroy(lists);
+  GOOD(raylanes_scene_closest1(scene, rays, &hit, NULL));
+  GOOD(raylanes_scene_corners(scene, &hit, 1, 0, three, 1));
+  EXPECT(hit.instance == 1 && three[0] == 3.25f && three[1] == -0.75f && three[4] == 3.25f &&
+         three[8] == 3.25f);
+  GOOD(raylanes_scene_corners(scene, NULL, 0, 0, NULL, 1));
+  REFUSED(raylanes_scene_corners(NULL, &hit, 1, 0, three, 1), "scene");
+  REFUSED(raylanes_scene_corners(scene, NULL, 1, 0, three, 1), "hits");
+  REFUSED(raylanes_scene_corners(scene, &hit, 1, 0, NULL, 1), "corners");
+  REFUSED(raylanes_scene_corners(scene, &hit, 1, 0, three, -1), "threads");
+  REFUSED(raylanes_scene_innermost_parts(NULL, places, 3, 0, parts, NULL), "scene");
+  REFUSED(raylanes_scene_innermost_parts(scene, NULL, 3, 0, parts, NULL), "points");
+  REFUSED(raylanes_scene_innermost_parts(scene, places, 3, 0, NULL, NULL), "parts");
+  REFUSED(raylanes_scene_containing_parts(NULL, places, 3, 0, &lists, NULL), "scene");
+  REFUSED(raylanes_scene_containing_parts(scene, places, 3, 1, &lists, NULL), "points");
+  EXPECT(lists == NULL);
+  REFUSED(raylanes_scene_containing_parts(scene, places, 3, 0, NULL, NULL), "lists");
+  raylanes_scene_destroy(scene);
+}
+
 static void test_refused_places(raylanes_scene* scene) {
   const float broken[9] = {0, 0, 0, 1, 0, 0, 0, NAN, 0};
   const raylanes_sphere sphere = {{0, 0, 0}, 1};
@@ -257,10 +305,14 @@ void test_scenes(void) {
   test_refused_bounds(scene);
   test_functions_of_rays(scene);
   test_lists(scene);
+  test_points(scene);
+  test_progress_of_points(scene);
+  test_refused_points(scene);
   test_files(scene);
   test_refused_places(scene);
   raylanes_scene_destroy(scene);
   test_meshes();
   test_places();
   test_other_primitives();
+  test_parts();
 }

@@ -5,6 +5,7 @@
 #include "tree_queries.h"
 #include "tree_refused.h"
 #include "tree_refused_points.h"
+#include "tree_triangles.h"
 
 static TREE* tetrahedron(void) {
   TREE* tree = NULL;

@@ -1,0 +1,58 @@
+// Corners and prepared calls, which trees alone have, for tree_test.h.
+
+static void test_triangles(const TREE* tree) {
+  const uint32_t named[3] = {0, RAYLANES_NO_PRIMITIVE, 3};
+  NUMBER three[3][9], lo[3], hi[3];
+  size_t i;
+  GOOD(CALL(corners)(tree, named, 3, 0, three[0]));
+  for (i = 0; i < 9; ++i) {
+    EXPECT(three[0][i] == corners[3 * faces[i / 3] + i % 3]);
+    EXPECT(three[1][i] != three[1][i]);
+    EXPECT(three[2][i] == corners[3 * faces[9 + i / 3] + i % 3]);
+  }
+  GOOD(CALL(bounds)(tree, lo, hi));
+  EXPECT(lo[0] == 0 && lo[1] == 0 && lo[2] == 0 && hi[0] == 1 && hi[1] == 1 && hi[2] == 1);
+}
+
+static void test_prepared_calls(const TREE* tree) {
+  raylanes_ray_options options = ray_options();
+  CALL(calls) * calls;
+  RECORD(hit) hit, again;
+  uint8_t occluded, is_occluded;
+  size_t i;
+  GOOD(CALL(calls_create)(&calls, tree, NULL));
+  for (i = 0; i < 3; ++i) {
+    GOOD(CALL(closest1)(tree, rays + i, &hit, NULL));
+    GOOD(CALL(occluded1)(tree, rays + i, &occluded, NULL));
+    GOOD(CALL(calls_closest)(calls, rays + i, &again));
+    EXPECT(memcmp(&hit, &again, sizeof hit) == 0);
+    GOOD(CALL(calls_occluded)(calls, rays + i, &is_occluded));
+    EXPECT(is_occluded == occluded);
+  }
+  CALL(calls_destroy)(calls);
+  CALL(calls_destroy)(NULL);
+  options.filter = reject_hits;
+  REFUSED(CALL(calls_create)(&calls, tree, &options), "filter");
+  EXPECT(calls == NULL);
+}
+
+static void test_refused_triangles(const TREE* tree) {
+  const uint32_t named[3] = {0, 1, 2};
+  NUMBER nines[28];
+  REFUSED(CALL(corners)(NULL, named, 3, 0, nines), "tree");
+  REFUSED(CALL(corners)(tree, NULL, 3, 0, nines), "primitives");
+  REFUSED(CALL(corners)(tree, named, 3, 3, nines), "primitives");
+  REFUSED(CALL(corners)(tree, named, 3, 0, NULL), "corners");
+  REFUSED(CALL(corners)(tree, named, 3, 0, (NUMBER*)(void*)((char*)nines + 1)), "corners");
+}
+
+static void test_refused_calls(const TREE* tree) {
+  CALL(calls)* calls = (CALL(calls)*)(void*)faces;  // anything
+  RECORD(hit) hit;
+  uint8_t occluded;
+  REFUSED(CALL(calls_create)(NULL, tree, NULL), "calls");
+  REFUSED(CALL(calls_create)(&calls, NULL, NULL), "tree");
+  EXPECT(calls == NULL);
+  REFUSED(CALL(calls_closest)(NULL, rays, &hit), "calls");
+  REFUSED(CALL(calls_occluded)(NULL, rays, &occluded), "calls");
+}
