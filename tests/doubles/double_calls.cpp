@@ -159,6 +159,28 @@ TEST(DoubleTrees, say_what_was_chosen) {
   EXPECT_NE(std::pair(few.builder, few.optimized), std::pair(many.builder, many.optimized));
 }
 
+// Batches that pass the tree by but for a ray that no sample looks at: calls with one ray must keep what options ask.
+TEST(DoubleCalls, keep_options_for_the_ray_that_does_not_pass_by) {
+  const std::vector<Double3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Index3> triangle{{0, 1, 2}};
+  const BvhD tree(corners, triangle);
+  constexpr std::size_t hitting = 1;
+  std::vector<RayD> rays(100, {{5, 5, 1}, 0, {0, 0, -1}, std::numeric_limits<double>::infinity()});
+  rays[hitting].origin = {0.25, 0.25, 1};
+  const std::vector<std::uint32_t> masks{2}, skips(rays.size(), 0);
+  const auto finds = [&](const TraceOptionsD& options) {
+    std::vector<HitD> hits(rays.size());
+    tree.closest(rays, hits, options);
+    return static_cast<bool>(hits[hitting]);
+  };
+  EXPECT_TRUE(finds({}));
+  EXPECT_TRUE(finds({.facing = Facing::front}));
+  EXPECT_FALSE(finds({.facing = Facing::back}));
+  EXPECT_FALSE(finds({.skip = skips}));
+  EXPECT_TRUE(finds({.mask = 2, .masks = masks}));
+  EXPECT_FALSE(finds({.mask = 1, .masks = masks}));
+}
+
 TEST(DoubleTrees, tell_of_each_triangle_once) {
   DoubleMesh mesh = moved(double_fan(600, 0.3f), 0.7, {5e6, 0.2, -0.3});
   mesh.triangles.push_back({0, 1, 1});
