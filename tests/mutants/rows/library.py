@@ -192,7 +192,6 @@ MUTANTS = [
          'locations[i]')),
     *rows_of('accel/scene/points/part_places.cpp', 'test_scene_points',
         ('parts: those that left the common tree twice', 'if (!member.is_struck) note', 'note'),
-        ('parts: boxes without room for rounded points', 'tree.slack * std::max', '0 * std::max'),
         ('parts: open meshes within their boxes alone', 'options_.rule == InsideRule::winding) {\n      std::ranges',
          'false) {\n      std::ranges'),
         ('parts: hidden ones contain points', '.mask & options_.mask) != 0', '.mask | 1u) != 0')),

@@ -81,6 +81,40 @@ TEST(ClosestInScenes, of_equal_distances_name_the_lowest_instance) {
   expect_closest(parts.scene, points);
 }
 
+// The larger of two common trees is asked first, and has the later instances.
+TEST(ClosestInScenes, of_equal_distances_in_two_common_trees) {
+  TriangleParts parts;
+  parts.add(integer_grid(4)), parts.add(integer_grid(6));
+  for (const std::uint32_t i : {0u, 1u, 0u, 1u}) parts.scene.place(i, {}, 1u << i);
+  parts.scene.update();
+  EXPECT_EQ(parts.scene.report().common_trees, 2u);
+  std::vector<Float3> points;
+  for (int i = 0; i < 150; ++i)
+    points.push_back(
+        {static_cast<float>(i % 15) / 2, static_cast<float>(i / 15) / 2, i % 2 == 0 ? 0.0f : 1.0f});
+  expect_closest(parts.scene, points);
+}
+
+// Triangles that a refit collapsed are not there, nor are the corners that took their place.
+TEST(ClosestInScenes, pass_collapsed_triangles_by) {
+  TriangleParts parts;
+  Mesh grid = integer_grid(6);
+  for (int i = 0; i < 2; ++i) parts.add(grid);
+  const Transform turned{{{0, -1, 0, 3}, {1, 0, 0, -2}, {0, 0, 1, 1}}};
+  for (const std::uint32_t i : {0u, 1u}) parts.scene.place(i, turned);
+  parts.scene.update();
+  for (std::size_t k = 0; k < grid.triangles.size(); k += 3) grid.triangles[k][1] = grid.triangles[k][0];
+  for (const std::uint32_t i : {0u, 1u}) parts.scene.refit(i, grid.vertices, grid.triangles);
+  parts.scene.update();
+  std::vector<Float3> points;
+  for (const Float3& vertex : grid.vertices) {
+    const Double3 at = placed(turned, vertex);
+    points.push_back({static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
+  }
+  expect_closest(parts.scene, points);
+  for (const Float3& point : points) EXPECT_NE(parts.scene.closest_point(point).primitive % 3, 0u);
+}
+
 // The distance of the exact transform, with the bound of SceneClosestPoint.
 TEST(ClosestInScenes, are_within_the_bound_of_rational_numbers) {
   using oracle::operator-;

@@ -163,6 +163,24 @@ TEST(PartsAtPoints, are_those_of_rational_numbers) {
   }
 }
 
+// Rounding moves points far in the space of a part that is nearly flat in the scene.
+TEST(PartsAtPoints, of_nearly_flat_parts) {
+  Random random(940);
+  TriangleParts parts;
+  parts.add(cube(-1, 1));
+  for (int i = 0; i < 40; ++i) parts.scene.place(0, transform_of_kind(5, random));
+  parts.scene.update();
+  std::vector<Float3> points;
+  for (std::uint32_t i = 0; points.size() < by_level(1500); i = (i + 1) % 40) {
+    Float3 corner;
+    for (float& x : corner)
+      x = random.chance(0.7) ? (random.chance(0.5) ? 1.0f : -1.0f) : random.number(-1, 1);
+    const Double3 at = placed(parts.scene.transform_of(i), corner);
+    points.push_back({static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])});
+  }
+  expect_exact_parts(parts.scene, parts.meshes, points);
+}
+
 TEST(PartsAtPoints, name_the_innermost_of_nested_shells) {
   TriangleParts parts;
   for (const int i : {3, 0, 2, 1, 4})
