@@ -41,7 +41,7 @@ void each_box_around(const BoundedTreeArrays& tree, const Float3& point, const V
       const auto child = static_cast<std::size_t>(std::countr_zero(left));
       bool holds = true;
       for (std::size_t axis = 0; axis < 3; ++axis)
-        holds = holds & (node.lo[axis][child] <= to[axis]) & (node.hi[axis][child] >= from[axis]);
+        holds = holds && node.lo[axis][child] <= to[axis] && node.hi[axis][child] >= from[axis];
       if (holds) stack[size++] = node.child[child];
     }
   }
