@@ -58,8 +58,8 @@ inline void keep_admitted(const DoubleTriangles& triangles, AnyVerdict& verdict,
                           const DoubleHitRule& sides) {
   const std::uint32_t front = bits(verdict.det > decltype(verdict.det)(0.0f));
   verdict.certain = admitted_lanes(sides.facing, verdict.certain, front);
-  verdict.certain = lanes_but(sides.skipped, verdict.certain, triangles, first);
-  verdict.undecided = lanes_but(sides.skipped, verdict.undecided, triangles, first);
+  const std::uint32_t there = lanes_but(sides.skipped, verdict.certain | verdict.undecided, triangles, first);
+  verdict.certain &= there, verdict.undecided &= there;
 }
 
 // As RuledAny.
