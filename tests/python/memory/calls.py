@@ -151,8 +151,8 @@ def calls_of_scenes():
     yield "SphereTree", lambda: raylanes.SphereTree(points, 0.25, threads=1).report()
     yield "pickle of SphereTree", lambda: pickle.loads(pickle.dumps(spheres)).centres.tobytes()
     yield "SphereTree.closest", lambda: spheres.closest(rays, threads=1).tobytes()
-    yield "SphereTree.closest(after)", lambda: spheres.closest(rays, after=spheres.closest(rays, threads=1), filter=even,
-                                                               threads=1).tobytes()
+    yield "SphereTree.closest(after)", lambda: spheres.closest(
+        rays, after=spheres.closest(rays, threads=1), filter=even, threads=1).tobytes()
     yield "SphereTree.occluded_from", lambda: spheres.occluded_from(points[0], points, threads=1).tobytes()
     yield "SphereTree.occluded", lambda: spheres.occluded(rays, threads=1).tobytes()
     yield "Scene(shared)", lambda: (saved(placed(tree)), saved(tree))
