@@ -27,17 +27,16 @@ void run(const SharedOptions& options) {
   RowTable table;
   for (const Path* const path : shown) {
     const bool is_active = path == &active, is_supported = supported(*path);
-    std::string support =
-        is_supported ? "yes" : "lacks " + feature_names(path->required.without(machine_features()));
-    std::erase(support, ',');  // so that the last column fits beside the longest list
+    const std::string support =
+        is_supported ? "yes" : "no: lacks " + feature_names(path->required.without(machine_features()));
     table.begin();
     table.add("path", "path", path->name)
         .add("isa", "isa", path->isa)
         .add("library", "library", path->library)
         .add("lanes", "lanes", path->lanes, std::to_string(path->lanes))
+        .add("active", "active", is_active, is_active ? "active" : "")
         .add("supported", "supported", is_supported, support)
-        .add("root mix", "root_mix", mix_on_this_machine(*path))
-        .add("active", "active", is_active, is_active ? "active" : "");
+        .add("root mix", "root_mix", mix_on_this_machine(*path));
   }
   options.check_output(table);
   table.print(options.columns);
