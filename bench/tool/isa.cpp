@@ -27,8 +27,9 @@ void run(const SharedOptions& options) {
   RowTable table;
   for (const Path* const path : shown) {
     const bool is_active = path == &active, is_supported = supported(*path);
-    const std::string support =
-        is_supported ? "yes" : "no: lacks " + feature_names(path->required.without(machine_features()));
+    std::string support =
+        is_supported ? "yes" : "lacks " + feature_names(path->required.without(machine_features()));
+    std::erase(support, ',');  // the longest list fits into a line
     table.begin();
     table.add("path", "path", path->name)
         .add("isa", "isa", path->isa)
