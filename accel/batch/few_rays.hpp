@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raylanes/traversal.hpp>
+#include <raylanes/triangle_tree.hpp>
 
 #include "../../dispatch/table/tree_view.hpp"
 #include "ray_source.hpp"
