@@ -43,10 +43,9 @@ struct RowsOfPath {
   bool may_fly;
 };
 using Kernel = void (*)(const DoubleTreeView&, const DoubleBatch&);
-// Nearest hits of rays that mostly end at the root, as calls with one ray; false if most go on, or if there are masks,
-// which these calls do not know.
+// Nearest hits of rays that mostly end at the root, as calls with one ray; false if most go on.
 bool trace_past(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const DoubleBatch& batch) {
-  if (!tree.tree.masks.see_all() || !pass_by(std::span(batch.rays, batch.size), tree.bounds)) return false;
+  if (!pass_by(std::span(batch.rays, batch.size), tree.bounds)) return false;
   for (std::size_t i = 0; i < batch.size; ++i)
     batch.hits[i] = kernels.closest_of_ray(tree, batch.rays[i], batch.facing,
                                            batch.skip != nullptr ? batch.skip[i] : no_primitive);

@@ -271,7 +271,7 @@ class RayDoor<TriangleTree> {
   detail::KernelsOfCalls<TriangleTree> kernels_of_calls(const TraceOptions& options) const {
     const RowsOfCalls rows = is_quick() ? RowsOfCalls(options, 1) : RowsOfCalls();
     if (rows.usual != nullptr) return {ready_, rows.usual->closest, rows.usual->any};
-    if (rows.chosen != nullptr) return {ready_, nullptr, nullptr, rows.chosen->closest, rows.chosen->any};
+    if (rows.by_rule != nullptr) return {ready_, nullptr, nullptr, rows.by_rule->closest, rows.by_rule->any};
     return {};
   }
 

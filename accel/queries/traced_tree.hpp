@@ -56,21 +56,21 @@ const RuledCallRow* ruled_row(const TraceOptions& options, std::size_t rays = 1)
 // One of these for one ray at a time, of so many rays; false if options ask for more.
 struct RowsOfCalls {
   const CallRow* usual = nullptr;
-  const RuledCallRow* chosen = nullptr;
+  const RuledCallRow* by_rule = nullptr;
 
   RowsOfCalls() = default;
   explicit RowsOfCalls(const CallRow& only) : usual(&only) {}
   RowsOfCalls(const TraceOptions& options, std::size_t rays)
-      : usual(usual_row(options)), chosen(usual == nullptr ? ruled_row(options, rays) : nullptr) {}
-  explicit operator bool() const { return usual != nullptr || chosen != nullptr; }
+      : usual(usual_row(options)), by_rule(usual == nullptr ? ruled_row(options, rays) : nullptr) {}
+  explicit operator bool() const { return usual != nullptr || by_rule != nullptr; }
   // skipped() is the primitive that is not there for the ray.
   template <class Skipped>
   Hit closest(const TreeView& tree, const Ray& ray, Facing facing, const Skipped& skipped) const {
-    return usual != nullptr ? usual->closest(tree, ray) : chosen->closest(tree, ray, facing, skipped());
+    return usual != nullptr ? usual->closest(tree, ray) : by_rule->closest(tree, ray, facing, skipped());
   }
   template <class Skipped>
   bool any(const TreeView& tree, const Ray& ray, Facing facing, const Skipped& skipped) const {
-    return usual != nullptr ? usual->any(tree, ray) : chosen->any(tree, ray, facing, skipped());
+    return usual != nullptr ? usual->any(tree, ray) : by_rule->any(tree, ray, facing, skipped());
   }
 };
 // Whether a call whose caller rejects hits sets no more than facing, skip, after, grade and path.

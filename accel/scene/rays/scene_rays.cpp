@@ -97,7 +97,7 @@ class KernelsOfScene {
       return;
     }
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
-    if (rows_.usual == nullptr && !names_no_instance) rows_.chosen = ruled_row(options, rays);
+    if (rows_.usual == nullptr && !names_no_instance) rows_.by_rule = ruled_row(options, rays);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
   std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
