@@ -143,6 +143,19 @@ raylanes_status raylanes_scene_add_primitives(raylanes_scene* scene, const void*
   });
 }
 
+raylanes_status raylanes_scene_add_scene(raylanes_scene* scene, const raylanes_scene* added,
+                                         std::uint32_t* geometry) {
+  return tell("geometry", geometry, [&] {
+    Scene& to = changed(scene);
+    const Scene& from = object_of(added);
+    auto tests = scene->tests;
+    if (added != scene) tests.insert(tests.end(), added->tests.begin(), added->tests.end());
+    const std::uint32_t number = to.add(from);
+    scene->tests = std::move(tests);
+    return number;
+  });
+}
+
 raylanes_status raylanes_scene_replace_tree(raylanes_scene* scene, std::uint32_t geometry,
                                             const raylanes_bvh* tree) {
   return status_of([&] { changed(scene).replace(geometry, shared_tree(tree)); });
@@ -216,6 +229,20 @@ raylanes_status raylanes_scene_transform_of(const raylanes_scene* scene, std::ui
 raylanes_status raylanes_scene_mask_of(const raylanes_scene* scene, std::uint32_t instance,
                                        std::uint32_t* mask) {
   return tell("mask", mask, [&] { return object_of(scene).mask_of(instance); });
+}
+
+raylanes_status raylanes_scene_levels_of(const raylanes_scene* scene, std::uint32_t instance,
+                                         raylanes_instance_level* levels, std::size_t capacity,
+                                         std::size_t* count) {
+  return status_of([&] {
+    require_pointer("count", count);
+    const auto to = span_of<InstanceLevel>("levels", levels, capacity);
+    const std::vector<InstanceLevel> all = object_of(scene).levels_of(instance);
+    *count = all.size();
+    if (all.size() > capacity)
+      throw SmallBuffer{capacity * sizeof(InstanceLevel), all.size() * sizeof(InstanceLevel)};
+    std::ranges::copy(all, to.begin());
+  });
 }
 
 raylanes_status raylanes_scene_describe(const raylanes_scene* scene, raylanes_scene_report* report,

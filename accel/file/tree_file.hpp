@@ -27,7 +27,7 @@ KdTreeArrays load_cells(std::istream& file);
 
 // --- The common parts.
 // The kind of the object in a file.
-enum class FileKind : std::uint8_t { bvh, bvh_of_doubles, kd_tree, scene };
+enum class FileKind : std::uint8_t { bvh, bvh_of_doubles, kd_tree, scene, nested_scene };
 
 struct FilePart {
   const void* bytes;

@@ -39,7 +39,8 @@ constexpr KindOfFile kind_named(const char (&word)[5], const char* name) {
 }
 // Indexed by FileKind.
 constexpr KindOfFile kinds[] = {kind_named("tree", "Bvh"), kind_named("doub", "BvhD"),
-                                kind_named("cell", "KdTree"), kind_named("scen", "Scene")};
+                                kind_named("cell", "KdTree"), kind_named("scen", "Scene"),
+                                kind_named("nest", "scene in a Scene")};
 const KindOfFile& info_of(FileKind kind) {
   return kinds[static_cast<std::size_t>(kind)];
 }

@@ -27,7 +27,9 @@ struct GeometryQuery {
 struct GeometryRecord {
   std::uint32_t kind, spheres;
 };
-enum GeometryKind : std::uint32_t { triangle_geometry, sphere_geometry };
+enum GeometryKind : std::uint32_t { triangle_geometry, sphere_geometry, nested_scene };
+
+class NestedScene;
 
 class Geometry {
  public:
@@ -50,6 +52,8 @@ class Geometry {
   // The volume that its triangles enclose, as Scene::containing_parts() says, without the transform. Any thread may
   // call it.
   double volume() const;
+  // The same if it is a scene; else null.
+  virtual const NestedScene* nested() const { return nullptr; }
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
@@ -76,5 +80,6 @@ std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree)
 // From the spheres of its record and from what save() wrote. Throw as Scene::load.
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere> spheres, std::istream& file);
 std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream& file);
+std::unique_ptr<Geometry> load_nested(std::span<const Sphere> spheres, std::istream& file);
 
 }  // namespace raylanes

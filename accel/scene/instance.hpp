@@ -19,6 +19,8 @@ struct Instance : PlacedTree {
   Transform transform;
   double doubt;  // by which share the inverse may be wrong; negative: nothing is hit, there is no inverse
   Standing standing = Standing::added;
+  // The instance that places the scene to which this one belongs; no_part: the caller has placed it.
+  std::uint32_t placer = no_part;
 
   Instance(std::uint32_t geometry_, const Transform& transform_, std::uint32_t mask_);
 };

@@ -2,6 +2,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
+#include "nested/nested_scene.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -17,6 +18,12 @@ std::vector<InstanceBounds> bounds_of_instances(const SceneParts& scene) {
   return bounds;
 }
 
+// Traces each instance by itself until the next update.
+void leave_common_trees(SceneParts& parts, std::span<const InstanceBounds> bounds) {
+  parts.set_tops(tops_over(parts.instances, bounds));
+  parts.traces_common = false;
+}
+
 // Takes an instance that gets another mask out of its common tree; the last one takes the tree along. So many may go
 // until the next update, each in a time like that of an update; with one more, all are traced by themselves.
 constexpr std::uint32_t max_let_out = 16;
@@ -24,11 +31,7 @@ constexpr std::uint32_t max_let_out = 16;
 void let_out(SceneParts& parts, std::shared_ptr<CommonTree>& from, std::uint32_t instance,
              std::uint32_t mask) {
   std::vector<InstanceBounds> bounds = bounds_of_instances(parts);
-  if (parts.let_out == max_let_out && from->members_left() > 1) {
-    parts.set_tops(tops_over(parts.instances, bounds));
-    parts.traces_common = false;
-    return;
-  }
+  if (parts.let_out == max_let_out && from->members_left() > 1) return leave_common_trees(parts, bounds);
   const std::shared_ptr<CommonTree> tree = from->is_shared ? std::make_shared<CommonTree>(*from) : from;
   if (tree->members_left() == 1) {
     tree->mask = mask, from = tree;
@@ -46,9 +49,38 @@ void let_out(SceneParts& parts, std::shared_ptr<CommonTree>& from, std::uint32_t
   from = tree, ++parts.let_out;
 }
 
+// The common tree in use that has the instance; null if there is none.
+std::shared_ptr<CommonTree>* common_tree_of(SceneParts& parts, std::uint32_t instance) {
+  if (!parts.is_current || !parts.traces_common) return nullptr;
+  const auto has_it = [&](const auto& tree) { return tree->has(instance); };
+  const auto tree = std::ranges::find_if(parts.commons, has_it);
+  return tree != parts.commons.end() ? &*tree : nullptr;
+}
+
 const SceneParts no_parts;
 
 }  // namespace
+
+void SceneParts::replace(std::uint32_t number, std::shared_ptr<Geometry> geometry) {
+  auto& replaced = at("geometry", geometries, number);
+  if (replaced->nested() != nullptr)
+    throw std::invalid_argument("scene: geometry " + std::to_string(number) +
+                                " is a scene, which nothing replaces");
+  replaced = std::move(geometry);
+  has_changed(number);
+}
+std::span<Instance> SceneParts::placed(std::uint32_t instance) {
+  const Instance& placed = at("instance", instances, instance);
+  if (placed.placer != no_part) {
+    std::uint32_t placer = placed.placer;
+    while (instances[placer].placer != no_part) placer = instances[placer].placer;
+    throw std::invalid_argument("scene: instance " + std::to_string(instance) +
+                                " is part of the scene that instance " + std::to_string(placer) +
+                                " places, which changes as a whole");
+  }
+  const NestedScene* const scene = geometries[placed.geometry]->nested();
+  return std::span(instances).subspan(instance, scene != nullptr ? 1 + scene->size() : 1);
+}
 
 Scene::Scene() : parts_(std::make_unique<SceneParts>()) {}
 const SceneParts& Scene::parts() const noexcept {
@@ -76,37 +108,53 @@ std::size_t Scene::geometry_count() const noexcept {
 
 std::uint32_t Scene::place(std::uint32_t geometry, const Transform& transform, std::uint32_t mask) {
   const QuietFloats quiet;
-  at("geometry", changed().geometries, geometry);
-  const std::uint32_t number = next_number("instances", changed().instances);
-  changed().instances.emplace_back(geometry, transform, mask);
-  changed().is_current = false;
+  SceneParts& parts = changed();
+  const NestedScene* const scene = at("geometry", parts.geometries, geometry)->nested();
+  const std::size_t members = scene != nullptr ? scene->size() : 0;
+  const std::uint32_t number = next_number("instances", parts.instances, 1 + members);
+  std::vector<Instance>& all = parts.instances;
+  if (const std::size_t size = number + 1 + members; size > all.capacity())
+    all.reserve(std::max(size, 2 * all.capacity()));
+  const Instance placed = all.emplace_back(geometry, transform, mask);
+  for (std::size_t i = 0; i < members; ++i) all.push_back(scene->member(placed, number, i));
+  parts.is_current = false;
   return number;
 }
 void Scene::move(std::uint32_t instance, const Transform& transform) {
   const QuietFloats quiet;
-  Instance& moved = at("instance", changed().instances, instance);
-  const Standing standing = left(moved.standing);
-  moved = Instance(moved.geometry, transform, moved.mask);
-  moved.standing = standing;
-  changed().is_current = false;
+  SceneParts& parts = changed();
+  const std::span<Instance> all = parts.placed(instance);
+  const NestedScene* const scene = parts.geometries[all[0].geometry]->nested();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Standing standing = left(all[i].standing);
+    all[i] =
+        i == 0 ? Instance(all[0].geometry, transform, all[0].mask) : scene->member(all[0], instance, i - 1);
+    all[i].standing = standing;
+  }
+  parts.is_current = false;
 }
 void Scene::set_moving(std::uint32_t instance, bool moving) {
-  Standing& standing = at("instance", changed().instances, instance).standing;
-  if (moving)
-    standing = Standing::apart;
-  else if (standing == Standing::apart)
-    standing = Standing::added;
+  for (Instance& placed : changed().placed(instance))
+    if (moving)
+      placed.standing = Standing::apart;
+    else if (placed.standing == Standing::apart)
+      placed.standing = Standing::added;
 }
 void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
   const QuietFloats quiet;
   SceneParts& parts = changed();
-  Instance& masked = at("instance", parts.instances, instance);
-  if (masked.mask == mask) return;
-  const auto has_it = [&](const auto& tree) { return tree->has(instance); };
-  const auto tree = std::ranges::find_if(parts.commons, has_it);
-  if (parts.is_current && parts.traces_common && tree != parts.commons.end())
-    let_out(parts, *tree, instance, mask), parts.set_only();
-  masked.mask = mask, masked.standing = left(masked.standing);
+  const std::span<Instance> all = parts.placed(instance);
+  if (all[0].mask == mask) return;
+  const NestedScene* const scene = parts.geometries[all[0].geometry]->nested();
+  const auto new_mask = [&](std::size_t i) { return i == 0 ? mask : mask & scene->mask(i - 1); };
+  bool leave = false;  // the common trees, together
+  for (std::size_t i = 1; i < all.size() && !leave; ++i)
+    leave = all[i].mask != new_mask(i) && common_tree_of(parts, instance + static_cast<std::uint32_t>(i));
+  if (leave) leave_common_trees(parts, bounds_of_instances(parts));
+  if (auto* const tree = common_tree_of(parts, instance)) let_out(parts, *tree, instance, mask);
+  parts.set_only();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].mask != new_mask(i)) all[i].mask = new_mask(i), all[i].standing = left(all[i].standing);
 }
 std::uint32_t Scene::geometry_of(std::uint32_t instance) const {
   return at("instance", parts().instances, instance).geometry;

@@ -5,6 +5,8 @@
 
 #include "../../dispatch/quiet_floats.hpp"
 #include "../file/tree_file.hpp"
+#include "../queries/traced_tree.hpp"
+#include "nested/nested_scene.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -27,7 +29,7 @@ static_assert(sizeof(Header) == 24 && sizeof(GeometryRecord) == 8 && sizeof(Inst
 constexpr struct {
   std::unique_ptr<Geometry> (*load)(std::span<const Sphere> spheres, std::istream& file);
   bool has_spheres;
-} kinds[] = {{load_triangles, false}, {load_spheres, true}};
+} kinds[] = {{load_triangles, false}, {load_spheres, true}, {load_nested, false}};
 
 struct Tables {
   std::vector<GeometryRecord> geometries;
@@ -35,12 +37,15 @@ struct Tables {
   std::vector<Sphere> spheres;  // of one geometry after the other
 };
 
+InstanceRecord record_of(const Instance& instance) {
+  return {instance.geometry, instance.mask, instance.transform};
+}
+
 Tables tables_of(const SceneParts& scene) {
   Tables tables;
   for (const auto& geometry : scene.geometries)
     tables.geometries.push_back(geometry->record(tables.geometries.size(), tables.spheres));
-  for (const Instance& instance : scene.instances)
-    tables.instances.push_back({instance.geometry, instance.mask, instance.transform});
+  for (const Instance& instance : scene.instances) tables.instances.push_back(record_of(instance));
   return tables;
 }
 
@@ -50,7 +55,7 @@ void require_possible(const Tables& tables) {
     if (geometry.kind >= std::size(kinds))
       refuse_file("there is no geometry of kind " + std::to_string(geometry.kind));
     if (!kinds[geometry.kind].has_spheres && geometry.spheres != 0)
-      refuse_file("it has spheres in a geometry of triangles");
+      refuse_file("it has spheres in a geometry of another kind");
     if (geometry.spheres > max_mesh_triangles)
       refuse_file("a geometry has " + std::to_string(geometry.spheres) +
                   " spheres, at most 2^28 are allowed");
@@ -61,6 +66,29 @@ void require_possible(const Tables& tables) {
     if (instance.geometry >= tables.geometries.size())
       refuse_file("an instance is of geometry " + std::to_string(instance.geometry) +
                   ", which does not exist");
+}
+
+void require_geometries(const SceneParts& scene) {
+  for (std::size_t i = 0; i < scene.geometries.size(); ++i)
+    if (const NestedScene* const nested = scene.geometries[i]->nested())
+      if (nested->geometries() >= scene.geometries.size() - i)
+        refuse_file("scene " + std::to_string(i) + " within it has more geometries than there are");
+}
+
+// Places the next of these instances. If it is one of a scene, its parts must be where that puts them.
+void place_next(Scene& scene, std::span<const InstanceRecord> records) {
+  const std::size_t at = scene.instance_count();
+  const SceneParts& parts = TreeAccess::parts(scene);
+  const auto& [geometry, mask, transform] = records[at];
+  const NestedScene* const nested = parts.geometries[geometry]->nested();
+  if (nested != nullptr && nested->size() >= records.size() - at)
+    refuse_file("a scene within it has more instances than there are");
+  scene.place(geometry, transform, mask);
+  for (std::size_t i = at + 1; i < parts.instances.size(); ++i) {
+    const InstanceRecord record = record_of(parts.instances[i]);
+    if (std::memcmp(&record, &records[i], sizeof record) != 0)
+      refuse_file("instance " + std::to_string(i) + " is not where its scene is placed");
+  }
 }
 
 template <class T>
@@ -106,8 +134,8 @@ Scene Scene::load(std::istream& file) {
     scene.changed().add(kinds[geometry.kind].load(spheres.first(geometry.spheres), file));
     spheres = spheres.subspan(geometry.spheres);
   }
-  for (const InstanceRecord& instance : tables.instances)
-    scene.place(instance.geometry, instance.transform, instance.mask);
+  require_geometries(scene.parts());
+  while (scene.instance_count() < tables.instances.size()) place_next(scene, tables.instances);
   scene.update();
   return scene;
 }

@@ -34,10 +34,10 @@ auto& at(const char* what, List& list, std::uint32_t number) {
                             ", it has " + std::to_string(list.size()));
   return list[number];
 }
-// The number of what is added.
+// The number of the first element of so many that are added.
 template <class List>
-std::uint32_t next_number(const char* what, const List& list) {
-  if (list.size() >= max_mesh_triangles)
+std::uint32_t next_number(const char* what, const List& list, std::size_t count = 1) {
+  if (count > max_mesh_triangles - list.size())
     throw std::length_error("scene: more than 2^28 " + std::string(what));
   return static_cast<std::uint32_t>(list.size());
 }
@@ -84,17 +84,18 @@ struct SceneParts {
   void set_trees() noexcept;
   // Sets tops and their views of this scene.
   void set_tops(std::vector<TopLevel> made) noexcept;
-  std::uint32_t add(std::shared_ptr<Geometry> geometry) {
-    const std::uint32_t number = next_number("geometries", geometries);
-    is_changed.reserve(number + std::size_t{1});
-    geometries.push_back(std::move(geometry));
-    is_changed.push_back(false);
+  std::uint32_t add(std::span<const std::shared_ptr<Geometry>> added) {
+    const std::uint32_t number = next_number("geometries", geometries, added.size());
+    is_changed.reserve(number + added.size());
+    geometries.insert(geometries.end(), added.begin(), added.end());
+    is_changed.resize(geometries.size());
     return number;
   }
-  void replace(std::uint32_t number, std::shared_ptr<Geometry> geometry) {
-    at("geometry", geometries, number) = std::move(geometry);
-    has_changed(number);
-  }
+  std::uint32_t add(const std::shared_ptr<Geometry>& geometry) { return add(std::span(&geometry, 1)); }
+  void replace(std::uint32_t number, std::shared_ptr<Geometry> geometry);
+  // The instance and the parts of the scene that it places, which follow it. Throws std::out_of_range if there is no
+  // such instance, and std::invalid_argument if another one places its scene.
+  std::span<Instance> placed(std::uint32_t instance);
   void has_changed(std::uint32_t geometry) {
     is_changed[geometry] = true;
     is_current = false;

@@ -45,6 +45,11 @@ RAYLANES_STATUS raylanes_scene_add_spheres(raylanes_scene* scene, const void* sp
 RAYLANES_STATUS raylanes_scene_add_primitives(raylanes_scene* scene, const void* boxes, size_t n,
                                               size_t stride, raylanes_primitive_test test, void* context,
                                               const raylanes_build_options* options, uint32_t* geometry);
+/// Adds a scene as it is, to be placed as a whole. Later changes of it do not change this scene, and it may be
+/// destroyed. Its geometries are shared, and follow: its geometry i is geometry *geometry + 1 + i of this scene. It may
+/// place scenes itself, to any depth. `context` of its own primitives must outlive this scene, too.
+RAYLANES_STATUS raylanes_scene_add_scene(raylanes_scene* scene, const raylanes_scene* added,
+                                         uint32_t* geometry);
 /// Replaces a geometry by a tree, whose memory the scene shares; its instances stay where they are.
 RAYLANES_STATUS raylanes_scene_replace_tree(raylanes_scene* scene, uint32_t geometry,
                                             const raylanes_bvh* tree);
@@ -60,9 +65,12 @@ RAYLANES_STATUS raylanes_scene_refit(raylanes_scene* scene, uint32_t geometry, c
 /// Places a geometry. The transform, row by row, maps a point (x, y, z) of the geometry to the scene: x' = t[0] x +
 /// t[1] y + t[2] z + t[3], and y' and z' by the next four numbers each; NULL is the identity. An instance with mask 0
 /// is never hit. The usual mask is 0xffffffff.
+/// If the geometry is a scene, its instance j becomes instance *instance + 1 + j of this scene. That has the product of
+/// both transforms, rounded to floats, and the bits that are in both masks. Hits name it.
 RAYLANES_STATUS raylanes_scene_place(raylanes_scene* scene, uint32_t geometry, const float transform[12],
                                      uint32_t mask, uint32_t* instance);
-/// Gives an instance another transform; NULL is the identity.
+/// Gives an instance another transform; NULL is the identity. If it places a scene, all instances of that move. An
+/// instance that belongs to a placed scene is an invalid argument, here and in the next two functions.
 RAYLANES_STATUS raylanes_scene_move(raylanes_scene* scene, uint32_t instance, const float transform[12]);
 /// Gives an instance another mask, at once: raylanes_scene_update() is not needed.
 RAYLANES_STATUS raylanes_scene_set_mask(raylanes_scene* scene, uint32_t instance, uint32_t mask);
@@ -85,6 +93,11 @@ RAYLANES_STATUS raylanes_scene_transform_of(const raylanes_scene* scene, uint32_
                                             float transform[12]);
 /// Finds the mask of an instance.
 RAYLANES_STATUS raylanes_scene_mask_of(const raylanes_scene* scene, uint32_t instance, uint32_t* mask);
+/// Writes the way to an instance from the outermost level in: the instance of this scene, then that of the scene which
+/// this one places, and so on. *count is set to the number of levels, 1 if the instance belongs to no placed scene. If
+/// that is more than `capacity`, nothing is written, and the status is RAYLANES_SMALL_BUFFER.
+RAYLANES_STATUS raylanes_scene_levels_of(const raylanes_scene* scene, uint32_t instance,
+                                         raylanes_instance_level* levels, size_t capacity, size_t* count);
 /// Writes how the scene is traced to the first `size` bytes of report: sizeof(raylanes_scene_report).
 RAYLANES_STATUS raylanes_scene_describe(const raylanes_scene* scene, raylanes_scene_report* report,
                                         size_t size);

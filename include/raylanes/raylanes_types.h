@@ -152,6 +152,11 @@ typedef struct raylanes_scene_closest_point {
   uint32_t primitive, geometry, instance;  ///< as in raylanes_scene_hit
 } raylanes_scene_closest_point;
 
+/// An instance of one level of scenes within scenes, by the numbers of the scene at that level.
+typedef struct raylanes_instance_level {
+  uint32_t instance, geometry;  ///< what it places
+} raylanes_instance_level;
+
 /// An instance that contains a point. If there is none, RAYLANES_NO_PART and RAYLANES_OUTSIDE.
 typedef struct raylanes_containing_part {
   uint32_t geometry, instance;

@@ -8,6 +8,7 @@
 #include <iosfwd>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/bvh.hpp>
@@ -93,7 +94,8 @@ struct QueryTypes<Scene> {
 /// - instances of an empty geometry;
 /// - instances whose transform has a number that is not finite;
 /// - instances whose transform is singular to doubles: |determinant| <= 2^-48 times the sum of its terms' sizes;
-/// - instances that reach beyond the largest float.
+/// - instances that reach beyond the largest float;
+/// - instances of scenes: those that belong to them are hit.
 ///
 /// A ray misses an instance if its origin or direction is not finite there. It also misses an instance if its direction
 /// is below 2^-126 there, unless the instance's transform is the identity.
@@ -167,8 +169,15 @@ class Scene : public SurfaceQueries<Scene>, public PointQueries<Scene> {
     return add(std::move(tree), detail::visit_with<Test>,
                const_cast<void*>(static_cast<const void*>(std::addressof(test))));
   }
+  /// Adds a scene, to be placed as a whole; returns the index of the geometry. The scene is added as it is: later
+  /// changes of it do not change this scene, and it needs no update(). It may place scenes itself, to any depth. It may
+  /// be this scene, as it was before the call.
+  /// Its geometries are shared, and follow in their order: its geometry i is geometry `returned + 1 + i` of this scene,
+  /// which may be replaced, refitted, and placed by itself. Primitives of your own must outlive this scene, too.
+  /// Takes 60 bytes for each instance of the added scene. Throws std::length_error for more than 2^28 geometries.
+  std::uint32_t add(const Scene& scene);
   /// Replaces a geometry by a tree of triangles; its instances stay where they are. Throws std::out_of_range if there
-  /// is no such geometry.
+  /// is no such geometry, and std::invalid_argument if it is a scene.
   void replace(std::uint32_t geometry, Bvh tree);
   /// Replaces a geometry by spheres; its instances stay where they are.
   void replace(std::uint32_t geometry, SphereTree spheres);
@@ -188,26 +197,40 @@ class Scene : public SurfaceQueries<Scene>, public PointQueries<Scene> {
   std::size_t geometry_count() const noexcept;  ///< the number of geometries
 
   /// Places a geometry; returns the index of the instance. An instance with mask 0 is never hit.
+  /// If the geometry is a scene, each of its instances becomes one of this scene: instance j of the added scene is
+  /// instance `returned + 1 + j`. Hits name these instances, and levels_of() their way. So hits are ordered by t, then
+  /// by the instances of all levels from the outermost in, then by primitive.
+  /// - Its transform is the product of both levels' transforms. Doubles compute each number as (a·x + b·y) + c·z, and
+  ///   add d in the translation; the result is rounded once to float. So rays are moved once, whatever the depth.
+  /// - Its mask has the bits that are in the masks of both levels.
+  /// Each of these instances takes the memory and the time of any other instance. Common trees take those with the
+  /// identity.
   /// Throws std::out_of_range if there is no such geometry, and std::length_error for more than 2^28 instances.
   std::uint32_t place(std::uint32_t geometry, const Transform& transform = {}, std::uint32_t mask = ~0u);
-  /// Gives an instance another transform. Throws std::out_of_range if there is no such instance.
+  /// Gives an instance another transform. If it places a scene, all instances of that move. Throws std::out_of_range if
+  /// there is no such instance, and std::invalid_argument if it belongs to a scene that another instance places.
   void move(std::uint32_t instance, const Transform& transform);
   /// Gives an instance another mask, at once, without update(). If the instance is in a common tree, it is struck out
   /// and traced by itself. Such a call takes the time of an update(): 0.2 to 0.4 µs for each instance, less than
   /// a millisecond for 1,000 triangles, and the build of the geometry's tree if it has none. From the 17th such call
-  /// after an update() on, rays go through each instance by itself until the next update(), which is slower.
-  /// Throws std::out_of_range if there is no such instance. Strong exception guarantee, as for update().
+  /// after an update() on, rays go through each instance by itself until the next update(), which is slower. So they do
+  /// after one call for an instance of a scene, if another mask takes one of that out of a common tree.
+  /// Throws as move() does. Strong exception guarantee, as for update().
   void set_mask(std::uint32_t instance, std::uint32_t mask);
   /// Says that an instance will move, or change otherwise, so that it is in no common tree from the next update()
   /// on; or, with false, that it will no longer. Throws as move() does.
   void set_moving(std::uint32_t instance, bool moving = true);
-  /// Returns the geometry of an instance. Throws as move() does.
+  /// Returns the geometry of an instance. Throws std::out_of_range if there is no such instance.
   std::uint32_t geometry_of(std::uint32_t instance) const;
-  /// Returns the transform of an instance. Throws as move() does.
+  /// Returns the transform of an instance. Throws as geometry_of() does.
   Transform transform_of(std::uint32_t instance) const;
-  /// Returns the mask of an instance. Throws as move() does.
+  /// Returns the mask of an instance. Throws as geometry_of() does.
   std::uint32_t mask_of(std::uint32_t instance) const;
-  std::size_t instance_count() const noexcept;  ///< the number of instances
+  /// Returns the way to an instance from the outermost level in: the instance of this scene, then that of the scene
+  /// which this one places, and so on. One level if the instance belongs to no placed scene. Throws as geometry_of()
+  /// does.
+  std::vector<InstanceLevel> levels_of(std::uint32_t instance) const;
+  std::size_t instance_count() const noexcept;  ///< the number of instances, parts of scenes among them
 
   /// Makes the scene ready for queries. Builds the tree over the instances again, in 0.2 to 0.4 µs for each of
   /// hundreds, or more if caches are cold. Builds common trees where the rules of the class say so, in the time of a

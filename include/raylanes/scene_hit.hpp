@@ -11,6 +11,15 @@ namespace raylanes {
 /// The index of no geometry and of no instance.
 inline constexpr std::uint32_t no_part = 0xffffffffu;
 
+/// An instance of one level of scenes within scenes, as Scene::levels_of() returns them: by the numbers of the scene at
+/// that level.
+struct InstanceLevel {
+  std::uint32_t instance = no_part;
+  std::uint32_t geometry = no_part;  ///< what it places
+
+  bool operator==(const InstanceLevel&) const = default;
+};
+
 /// A hit in a scene: a Hit, and what was hit. A miss has no_primitive and no_part; a default-constructed one is a miss.
 struct SceneHit {
   float t = std::numeric_limits<float>::infinity();

@@ -120,6 +120,23 @@ void instances_of(const SharedScene& shared, const py::array& numbers, const py:
   }
 }
 
+// Rows of as many levels as the deepest instance has, of an instance and a geometry each, as bytes; and how many levels
+// these are. No instance has no_part in all of them.
+py::tuple levels_of(const SharedScene& shared, const py::array& numbers) {
+  const auto of_numbers = records_of<std::uint32_t>(numbers);
+  const Scene& scene = *shared.state;
+  std::vector<std::vector<InstanceLevel>> ways;
+  std::size_t deepest = 1;
+  for (std::size_t i = 0; i < of_numbers.count; ++i) {
+    const std::uint32_t number = of_numbers[i];
+    ways.push_back(number != no_part ? scene.levels_of(number) : std::vector<InstanceLevel>());
+    deepest = std::max(deepest, ways.back().size());
+  }
+  std::vector<InstanceLevel> rows(ways.size() * deepest);
+  for (std::size_t i = 0; i < ways.size(); ++i) std::ranges::copy(ways[i], rows.data() + i * deepest);
+  return py::make_tuple(bytes_kept(std::move(rows)), deepest);
+}
+
 py::tuple corners_of(const Box& box) {
   return py::make_tuple(box.lo, box.hi);
 }
@@ -176,6 +193,7 @@ void bind_scenes(py::module_& module) {
   def_constructor(scene, empty_scene);
   def_constructor(scene, made_from<SharedScene>);
   scene.def("add", add)
+      .def("add_scene", add_scene)
       .def("add_mesh", add_mesh)
       .def("replace", replace)
       .def("refit", refit_geometry)
@@ -186,6 +204,7 @@ void bind_scenes(py::module_& module) {
       .def("update", update)
       .def("report", report_of_scene)
       .def("instances", instances_of)
+      .def("levels_of", levels_of)
       .def("geometry_count",
            [](const SharedScene& shared) { return to_python(shared.state->geometry_count()); })
       .def("instance_count",

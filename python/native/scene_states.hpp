@@ -75,6 +75,13 @@ inline std::uint32_t add(SharedScene& shared, const py::object& part) {
   return number;
 }
 
+inline std::uint32_t add_scene(SharedScene& shared, const SharedScene& other) {
+  const std::shared_ptr<const Scene> added = other.state;
+  std::uint32_t number = 0;
+  change(shared, is_quick(added->instance_count()), [&](Scene& scene) { number = scene.add(*added); });
+  return number;
+}
+
 inline std::uint32_t add_mesh(SharedScene& shared, const py::array& vertices, const py::array& faces,
                               int threads) {
   const auto of_vertices = vertices_of<float>(vertices);
@@ -106,24 +113,26 @@ inline void require_as_many(std::size_t elements, std::size_t others) {
   if (elements != others) throw std::invalid_argument("arrays of instances have different sizes");
 }
 
-// Returns the first of the new instances, which are numbered in order.
-inline std::size_t place(SharedScene& shared, std::uint32_t geometry, const py::array& transforms,
-                         const py::array& masks) {
+// Returns the first of the new instances, and how many numbers each of them takes: with those of its scene.
+inline std::pair<std::size_t, std::size_t> place(SharedScene& shared, std::uint32_t geometry,
+                                                 const py::array& transforms, const py::array& masks) {
   const auto of_transforms = records_of<Transform>(transforms);
   const auto of_masks = records_of<std::uint32_t>(masks);
   require_as_many(of_transforms.count, of_masks.count);
-  std::size_t first = 0;
+  std::size_t first = 0, end = 0;
   change(shared, of_transforms.count == 1, [&](Scene& scene) {
     first = scene.instance_count();
     for (std::size_t i = 0; i < of_transforms.count; ++i)
       scene.place(geometry, of_transforms[i], of_masks[i]);
+    end = scene.instance_count();
   });
-  return first;
+  return {first, of_transforms.count > 0 ? (end - first) / of_transforms.count : 1};
 }
 
 // Throws before anything changes.
-inline void require_instances(const Scene& scene, const RayRecords<std::uint32_t>& instances) {
-  for (std::size_t i = 0; i < instances.count; ++i) scene.mask_of(instances[i]);
+inline void require_instances(Scene& scene, const RayRecords<std::uint32_t>& instances) {
+  for (std::size_t i = 0; i < instances.count; ++i)
+    if (scene.levels_of(instances[i]).size() > 1) scene.set_moving(instances[i]);  // which refuses it
 }
 
 inline void move(SharedScene& shared, const py::array& instances, const py::array& transforms) {

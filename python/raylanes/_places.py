@@ -11,6 +11,7 @@ class Places:
     """Instances of the native scene `self._tree`, and their names by index."""
 
     _names: dict[int, str] = {}  # of a scene that has named none
+    _names_within: dict[int, dict[int, str]] = {}  # by geometry: those of an added scene
 
     def geometry_of(self, instance):
         """Return the geometry of an instance, or of each of many.
@@ -72,6 +73,31 @@ class Places:
         """
         return self._instances(instance)["transform"]
 
+    def levels_of(self, instance):
+        """Return the way to an instance, or to each of many, through the scenes that it is in.
+
+        Parameters
+        ----------
+        instance : int or array of int, shape (...)
+            The instances, or no_part. IndexError is raised if another one does not exist.
+
+        Returns
+        -------
+        ndarray of uint32, shape (..., levels, 2)
+            An instance and its geometry for each level, from the outermost one in: first of this scene, then of the
+            scene that this instance places, by the numbers of that scene, and so on. There are as many levels as the
+            deepest instance has, one at least; where an instance has fewer, and for no_part, the rest is no_part.
+
+        Examples
+        --------
+        >>> scene.levels_of(0)
+        array([[0, 0]], dtype=uint32)
+        """
+        instances = unsigned("instance", instance)
+        unique, which = np.unique(instances, return_inverse=True)
+        levels, depth = self._tree.levels_of(np.ascontiguousarray(unique))
+        return levels.view(np.uint32).reshape(-1, depth, 2)[which.reshape(instances.shape)]
+
     def name_of(self, instance):
         """Return the name of an instance, or of each of many, such as hits.instance.
 
@@ -126,15 +152,17 @@ class Places:
         self._tree.instances(np.ascontiguousarray(instances).reshape(-1), records.reshape(-1))
         return records
 
-    def _give_names(self, first, names):
-        """Names of new instances from `first` on, in order; an empty one is none."""
+    def _give_names(self, placed, names, within):
+        """Names of new instances, in order; an empty one is none. `within`: names in the scene that each one places."""
         if "_names" not in self.__dict__:
             self._names = {}
-        for index, name in enumerate(names, first):
+        for index, name in zip(placed, names):
             if name:
                 self._names[index] = name
             else:
                 self._names.pop(index, None)
+            for number, inner in within.items():
+                self._names[index + 1 + number] = inner
 
     def _parts_of_copy(self):
         return {**super()._parts_of_copy(), "_names": self._names.copy()}

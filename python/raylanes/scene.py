@@ -64,14 +64,15 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         self._tree = _native.Scene()
 
     def add(self, tree, faces=None, *, threads=0):
-        """Add a tree, whose memory the scene shares, or a mesh, which it copies.
+        """Add a tree, whose memory the scene shares, a mesh, which it copies, or a scene, to be placed as a whole.
 
         A mesh has no tree of its own until one is needed: instances that stand where they were made are traced as one
-        tree.
+        tree. A scene is added as it is: later changes of it do not change this one. Its geometries follow it: geometry
+        i of it is geometry `returned + 1 + i` of this scene. It may place scenes itself, to any depth.
 
         Parameters
         ----------
-        tree : Bvh of float32, SphereTree, array of float of shape (n, 3), or a mesh
+        tree : Bvh of float32, SphereTree, Scene, array of float of shape (n, 3), or a mesh
             The tree, which may be in any number of scenes; or the vertices of a mesh, as in Bvh. Numbers that float32
             does not hold raise ValueError.
         faces : array of int, shape (m, 3), optional
@@ -97,6 +98,13 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         >>> scene.add([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
         1
         """
+        if faces is None and isinstance(tree, Scene):
+            names, names_within = tree._names.copy(), tree._names_within
+            added = self._tree.add_scene(tree._tree)
+            if names or names_within:
+                within = {added + 1 + geometry: others for geometry, others in names_within.items()}
+                self._names_within = {**self._names_within, **within, added: names}
+            return added
         if not _is_mesh(tree, faces):
             return self._tree.add(_part_of(tree))
         return self._tree.add_mesh(*_mesh_of_floats(tree, faces), threads_of(threads))
@@ -162,6 +170,10 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
     def place(self, geometry, transform=None, *, mask=EVERY_BIT, name=None):
         """Place a geometry once or many times. update() must follow.
 
+        If it is a scene, its instance j becomes instance `returned + 1 + j` of this scene. Its transform is the product
+        of both, rounded to float32, and its mask has the bits of both. Hits name these instances; levels_of() tells
+        their way, and name_of() the names that they have in their own scene.
+
         Parameters
         ----------
         geometry : int
@@ -177,7 +189,8 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         Returns
         -------
         int or ndarray of int64, shape (...)
-            The index of the instance, or of each instance: they are numbered in order.
+            The index of the instance, or of each instance: they are numbered in order, each before
+            the parts of its scene.
 
         Raises
         ------
@@ -192,13 +205,17 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         rows, shape = _transforms(np.eye(4)[:3] if transform is None else transform)
         masks, names = unsigned("mask", mask), _texts("name", "" if name is None else name)
         whole = _common(_common(shape, masks.shape), names.shape)
-        first = self._tree.place(_index("geometry", geometry), _spread(rows, shape, whole), _flat(masks, whole))
-        if name is not None or self._names:
-            self._give_names(first, _flat(names, whole).tolist())
-        return first if whole == () else first + np.arange(count_of(whole)).reshape(whole)
+        geometry, total = _index("geometry", geometry), count_of(whole)
+        first, step = self._tree.place(geometry, _spread(rows, shape, whole), _flat(masks, whole))
+        placed = range(first, first + step * total, step)
+        if name is not None or self._names or self._names_within:
+            self._give_names(placed, _flat(names, whole).tolist(), self._names_within.get(geometry, {}))
+        return first if whole == () else np.array(placed, np.int64).reshape(whole)
 
     def move(self, instance, transform):
         """Give instances other transforms. update() must follow.
+
+        All instances of a placed scene move with the one that places it.
 
         Parameters
         ----------
@@ -215,6 +232,8 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         ------
         IndexError
             If there is no such instance; then none has moved.
+        ValueError
+            If an instance belongs to a scene that another one places; then none has moved.
 
         Examples
         --------

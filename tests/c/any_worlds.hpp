@@ -50,7 +50,7 @@ struct World<double> {
   DoubleMesh mesh;
   std::vector<RayD> rays;
 };
-// The mesh in places of any bits.
+// The mesh in places of any bits, or all of these again as a scene in the same places.
 template <>
 struct World<Scene> : World<float> {
   struct Place {
@@ -66,11 +66,15 @@ struct World<Scene> : World<float> {
           if (bytes.chance(50)) number = coordinates();
       places.push_back(place);
     }
+    is_nested = bytes.chance(64);
   }
   Scene tree() const {
     Scene scene;
     scene.add(mesh);
     for (const auto& [transform, mask] : places) scene.place(0, transform, mask);
+    const std::uint32_t whole = is_nested ? scene.add(scene) : 0;
+    for (const auto& [transform, mask] : places)
+      if (is_nested) scene.place(whole, transform, mask);
     scene.update();
     return scene;
   }
@@ -85,10 +89,27 @@ struct World<Scene> : World<float> {
         if (raylanes_scene_move(*scene, part + 1, nullptr) != RAYLANES_INVALID_ARGUMENT)
           fail("an instance that is not there");
       }
+      if (is_nested) place_whole(*scene);
       raylanes_scene_update(*scene, 1);
     });
   }
   std::vector<Place> places;
+  bool is_nested;
+
+ private:
+  void place_whole(raylanes_scene* scene) const {
+    std::uint32_t whole, part;
+    raylanes_scene_add_scene(scene, scene, &whole);
+    for (const auto& [transform, mask] : places) {
+      raylanes_scene_place(scene, whole, transform.row[0], mask, &part);
+      raylanes_instance_level levels[2];
+      std::size_t count = 0;
+      const bool has_way =
+          raylanes_scene_levels_of(scene, part + 1, levels, 2, &count) == RAYLANES_OK && count == 2;
+      if (!has_way || levels[0].instance != part || levels[1].instance != 0)
+        fail("another way to an instance");
+    }
+  }
 };
 
 }  // namespace raylanes::testing

@@ -72,8 +72,8 @@ FOLDERS = {
     'accel/scene': ('', ('test_scenes',)),
     'accel/trees': ('', ('test_builders', 'test_doubles', 'test_queries') + TREES),
     'python/native': ('', ('python_arrays', 'python_trees', 'python_doubles', 'python_scene_hits',
-                           'python_scene_changes', 'python_ray_parts', 'python_sharing', 'python_skip',
-                           'python_sphere_trees')),
+                           'python_scene_changes', 'python_scenes_within', 'python_ray_parts', 'python_sharing',
+                           'python_skip', 'python_sphere_trees')),
 }
 
 

@@ -140,8 +140,8 @@ TEST(SavedScene, that_is_none_is_refused_whatever_its_checksum) {
   expect_words(refusal(header, std::uint64_t{1} << 60, 8), {"counts"});
   expect_words(refusal(header + 8, std::uint64_t{1} << 60, 8), {"counts"});
   expect_words(refusal(header + 16, std::uint64_t{1} << 60, 8), {"counts"});
-  expect_words(refusal(geometries, 2, 4), {"kind 2"});
-  expect_words(refusal(geometries + 4, 1, 4), {"spheres", "triangles"});
+  expect_words(refusal(geometries, 3, 4), {"kind 3"});
+  expect_words(refusal(geometries + 4, 1, 4), {"spheres", "another kind"});
   expect_words(refusal(geometries + 12, 7, 4), {"spheres"});
   expect_words(refusal(geometries + 12, (std::uint64_t{1} << 28) + 1, 4), {"268435457 spheres", "2^28"});
   expect_words(refusal(instances + 56, 5, 4), {"geometry 5"});

@@ -4,7 +4,9 @@
 #include <raylanes/paths.hpp>
 #include <raylanes/scene.hpp>
 
-#include "../../accel/scene/instance.hpp"
+#include "../../accel/queries/traced_tree.hpp"
+#include "../../accel/scene/nested/nested_scene.hpp"
+#include "../../accel/scene/scene_parts.hpp"
 #include "../queries/query_oracle.hpp"
 
 namespace raylanes::testing {
@@ -34,13 +36,18 @@ inline bool reaches_too_far(const Instance& instance, const Box& part) {
   return box.lo[0] > box.hi[0];
 }
 
+// Whether an instance places a scene, so that nothing of its own can be hit.
+inline bool places_scene(const Scene& scene, std::uint32_t instance) {
+  return TreeAccess::parts(scene).geometries[scene.geometry_of(instance)]->nested() != nullptr;
+}
+
 // The first of all hits; closest_of(geometry, ray) is that of a part.
 template <class ClosestOf>
 SceneHit expected_hit(const Scene& scene, const Ray& ray, std::uint32_t mask, const ClosestOf& closest_of) {
   SceneHit best;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
-    if ((instance.mask & mask) == 0 || instance.doubt < 0) continue;
+    if ((instance.mask & mask) == 0 || instance.doubt < 0 || places_scene(scene, i)) continue;
     const Bvh* const tree = scene.tree(instance.geometry);
     if (tree != nullptr && reaches_too_far(instance, tree->bounds())) continue;
     const Hit hit = closest_of(instance.geometry, mapped_ray(ray, instance));
@@ -63,7 +70,7 @@ std::vector<SceneHit> all_scene_hits_by(const Scene& scene, const Ray& ray, std:
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const Instance instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
     const Bvh* const tree = scene.tree(instance.geometry);
-    if ((instance.mask & mask) == 0 || instance.doubt < 0) continue;
+    if ((instance.mask & mask) == 0 || instance.doubt < 0 || places_scene(scene, i)) continue;
     if (tree != nullptr && reaches_too_far(instance, tree->bounds())) continue;
     for (const Hit& hit : all_of(instance.geometry, mapped_ray(ray, instance), i))
       all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});

@@ -1,6 +1,7 @@
 // Hits in scenes after others.
 
 #include "../../queries/after.hpp"
+#include "../../queries/traced_tree.hpp"
 #include "../scene_parts.hpp"
 
 namespace raylanes {
@@ -41,8 +42,9 @@ void require_after_in_scene(const TraceOptions& options, std::size_t rays) {
 
 void require_triangles(const Scene& scene, const TraceOptions& options) {
   require_exact_in_scene(options);
+  const SceneParts& parts = TreeAccess::parts(scene);
   for (std::uint32_t i = 0; i < scene.geometry_count(); ++i)
-    if (scene.tree(i) == nullptr)
+    if (scene.tree(i) == nullptr && parts.geometries[i]->nested() == nullptr)
       throw std::invalid_argument("scene: crossings are of triangles alone, geometry " + std::to_string(i) +
                                   " has other primitives");
 }

@@ -114,6 +114,41 @@ static void test_places(void) {
   raylanes_scene_destroy(NULL);
 }
 
+// The tetrahedron twice in a scene, which is placed by two more.
+static void test_scenes_within(void) {
+  raylanes_scene *part = scene_of_tetrahedron(), *whole = NULL;
+  raylanes_instance_level levels[3] = {{7, 7}, {7, 7}, {7, 7}};
+  uint32_t geometry, instance, mask;
+  size_t count = 0;
+  GOOD(raylanes_scene_place(part, 0, up_by_4, 6, &instance));
+  GOOD(raylanes_scene_create(&whole));
+  GOOD(raylanes_scene_add_scene(whole, part, &geometry));
+  raylanes_scene_destroy(part);
+  GOOD(raylanes_scene_place(whole, geometry, up_by_4, 3, &instance));
+  EXPECT(geometry == 0 && instance == 0);
+  GOOD(raylanes_scene_update(whole, 1));
+  expect_hit(whole, NULL, 0.5f, 1, 2);
+  GOOD(raylanes_scene_mask_of(whole, 2, &mask));
+  EXPECT(mask == 2);
+  GOOD(raylanes_scene_add_scene(whole, whole, &geometry));
+  GOOD(raylanes_scene_place(whole, geometry, NULL, every_bit, &instance));
+  EXPECT(geometry == 2 && instance == 3 && raylanes_scene_instance_count(whole) == 7);
+  EXPECT(raylanes_scene_levels_of(whole, 6, levels, 2, &count) == RAYLANES_SMALL_BUFFER && count == 3);
+  EXPECT(levels[0].instance == 7);
+  GOOD(raylanes_scene_levels_of(whole, 6, levels, 3, &count));
+  EXPECT(levels[0].instance == 3 && levels[0].geometry == 2 && levels[1].instance == 0 &&
+         levels[1].geometry == 0 && levels[2].instance == 1 && levels[2].geometry == 0);
+  REFUSED(raylanes_scene_levels_of(whole, 7, levels, 3, &count), "there is no instance 7");
+  REFUSED(raylanes_scene_levels_of(whole, 6, levels, 3, NULL), "count: ");
+  REFUSED(raylanes_scene_levels_of(NULL, 6, levels, 3, &count), "scene: ");
+  REFUSED(raylanes_scene_levels_of(whole, 6, NULL, 3, &count), "levels: ");
+  REFUSED(raylanes_scene_move(whole, 6, NULL), "instance 3");
+  REFUSED(raylanes_scene_set_mask(whole, 2, 1), "instance 0");
+  REFUSED(raylanes_scene_add_scene(whole, NULL, &geometry), "is NULL");
+  REFUSED(raylanes_scene_add_scene(NULL, whole, &geometry), "scene: ");
+  raylanes_scene_destroy(whole);
+}
+
 static int32_t hit_roof(void* context, uint32_t primitive, const raylanes_ray* ray, raylanes_hit* hit) {
   const float* const height = context;
   const float t = (height[primitive] - ray->origin[2]) / ray->direction[2];
@@ -313,6 +348,7 @@ void test_scenes(void) {
   raylanes_scene_destroy(scene);
   test_meshes();
   test_places();
+  test_scenes_within();
   test_other_primitives();
   test_parts();
 }

@@ -332,7 +332,12 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
         other.place(0, {{{1, x, 0, 1}, {0, 0.3f, x, 0}, {0, 0, 1, x}}});
       other.update(), other.bounds();
     };
-    calls["Scene::add"] = [&] { Scene().add(Bvh(mesh)), Scene().add(SphereTree(spheres)); };
+    calls["Scene::add"] = [&] {
+      Scene().add(Bvh(mesh)), Scene().add(SphereTree(spheres));
+      Scene other;
+      other.place(other.add(solid), {{{3e38f, 1e-40f, 0, 3e38f}, {0, 3, 0, 0}, {0, 0, 1e-30f, 1}}});
+      other.update(threads);
+    };
     calls["Scene::replace"] = [&] { solid.replace(0, Bvh(ball)), solid.update(); };
     calls["Scene::refit"] = [&] { solid.refit(0, ball.vertices, ball.triangles, threads), solid.update(); };
     calls["Scene::move"] = [&] {
@@ -347,6 +352,7 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     calls["Scene::instance_count"] = [&] { solid.instance_count(); };
     calls["Scene::geometry_of"] = [&] { solid.geometry_of(0); };
     calls["Scene::transform_of"] = [&] { solid.transform_of(0); };
+    calls["Scene::levels_of"] = [&] { solid.levels_of(0); };
     calls["Scene::mask_of"] = [&] { solid.mask_of(0); };
     calls["Scene::save"] = calls["Scene::load"] = [&] {
       std::stringstream file;

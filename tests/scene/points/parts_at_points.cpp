@@ -2,6 +2,7 @@
 #include <raylanes/bounded_tree.hpp>
 
 #include "../../../bench/support/oracles/exact_point.hpp"
+#include "../nested/nested_cases.hpp"
 #include "point_scenes.hpp"
 
 namespace raylanes::testing {
@@ -160,6 +161,17 @@ TEST(PartsAtPoints, are_those_of_rational_numbers) {
           EXPECT_GT(several, 20u);
         }
       }
+  }
+}
+
+TEST(PartsAtPoints, of_scenes_in_scenes_are_those_of_rational_numbers) {
+  for (std::uint64_t seed = 950; seed < 950 + by_level<std::uint64_t>(2, 4, 20); ++seed) {
+    Random random(seed);
+    NestedCase nested = nested_case(random, 2, true);
+    nested.scene.update();
+    const std::vector<Float3> points = points_near(nested.scene, nested.meshes, by_level(250), random);
+    for (const std::uint32_t mask : {~0u, 2u})
+      expect_exact_parts(nested.scene, nested.meshes, points, InsideRule::parity, mask);
   }
 }
 
