@@ -26,9 +26,11 @@ bool are_defaults(const Options& options) {
   const auto bits = [](const auto* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); };
   std::uintptr_t some = bits(options.path) | bits(options.active) | bits(options.progress) |
                         bits(options.skip.first) | options.skip.count | bits(options.after.first) |
-                        options.after.count | static_cast<std::uintptr_t>(options.facing);
+                        options.after.count;
+  if constexpr (requires { options.facing; }) some |= static_cast<std::uintptr_t>(options.facing);
   if constexpr (requires { options.masks; }) some |= options.masks.size();
-  if constexpr (requires { options.counters; }) {
+  if constexpr (requires { options.counters; }) some |= bits(options.counters);
+  if constexpr (requires { options.hint; }) {
     struct Choices {
       TriangleTest test;
       Grade grade;
@@ -41,7 +43,7 @@ bool are_defaults(const Options& options) {
     constexpr Choices usual{by_default.test, by_default.grade, by_default.mode, by_default.hint};
     std::uint32_t given;
     std::memcpy(&given, &options, sizeof given);
-    some |= bits(options.counters) | (given ^ std::bit_cast<std::uint32_t>(usual));
+    some |= given ^ std::bit_cast<std::uint32_t>(usual);
   }
   return some == 0 && options.threads >= 0;
 }

@@ -98,6 +98,18 @@ bool BoundedTree::occluded(const Ray& ray, LeafFunction visit, void* context,
                                     }) != 0;
 }
 
+bool BoundedTree::visit_ray(const Ray& ray, float (*visit)(void*, std::uint32_t, std::uint32_t),
+                            detail::SearchInOrder& search, const VisitOptions& options) const {
+  const bool is_plain = tree_ != nullptr && tree_->root != empty_reference && options.threads >= 0 &&
+                        options.counters == nullptr && options.after.first == nullptr &&
+                        options.after.count == 0 && !QuietFloats::are_wanted();
+  if (!is_plain) return false;
+  search.order = tree_->order.data(), search.skipped = skip_of_one("bounded tree", options);
+  const QueryKernels& row = kernels_of(checked_path(options.path)).queries.plain;
+  row.visit_ray(tree_->view(), ray, ray.tmax, visit, &search);
+  return true;
+}
+
 std::span<const std::uint32_t> BoundedTree::order() const& noexcept {
   return tree_ ? std::span<const std::uint32_t>(tree_->order) : std::span<const std::uint32_t>();
 }

@@ -80,6 +80,18 @@ BoundedTreeArrays tree_over(std::span<const Box> boxes, const BoundedBuildOption
   return tree;
 }
 
+bool overlap(std::span<const Box> boxes, const Box& bounds) {
+  const auto volume_of = [](const Box& box) {
+    double volume = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) volume *= double{box.hi[axis]} - double{box.lo[axis]};
+    return volume;
+  };
+  double volume = 0.0;
+  for (const Box& box : boxes)
+    if (is_visited(box)) volume += volume_of(box);
+  return volume > 0.125 * volume_of(bounds);  // measured
+}
+
 }  // namespace
 
 bool is_visited(const Box& box) {
@@ -108,7 +120,7 @@ BoundedTreeArrays build_box_tree(const char* what, std::span<const Box> boxes,
   if (!boxes.empty())
     on_threads(options.threads,
                [&](int threads) { tree = tree_over(boxes, options, builder.build, threads); });
-  tree.size = boxes.size();
+  tree.size = boxes.size(), tree.overlaps = overlap(boxes, tree.bounds);
   return tree;
 }
 

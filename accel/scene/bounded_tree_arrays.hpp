@@ -14,8 +14,9 @@ struct BoundedTreeArrays {
   LargeVector<std::uint32_t> order;  // primitives, leaf by leaf; rising within one
   TreeReference root = empty_reference;
   Box bounds = empty_box;
-  std::size_t size = 0;  // boxes, also those that nothing visits
-  float slack = 0.0f;    // of rays' origins
+  std::size_t size = 0;   // boxes, also those that nothing visits
+  float slack = 0.0f;     // of rays' origins
+  bool overlaps = false;  // whether a point of the bounds is in more than one box, on average
 
   TreeView view() const { return {nodes.data(), nullptr, root, bounds, nullptr, slack}; }
   std::size_t bytes() const { return nodes.size() * sizeof(WideNode) + order.size() * sizeof(std::uint32_t); }

@@ -10,13 +10,33 @@ namespace raylanes {
 // Spheres in the order of a tree's leaves.
 struct SphereTreeArrays {
   BoundedTreeArrays boxes;
-  std::vector<float> row[4];  // centre and signed_square of the radius
-  std::vector<float> radius;  // as given, for files
+  std::vector<float> numbers;  // as SphereLeaves has them
+  std::vector<float> radius;   // as given, for files
 
-  std::size_t bytes() const { return boxes.bytes() + 5 * row[0].size() * sizeof(float); }
+  SphereLeaves leaves() const { return {numbers.data(), boxes.order.data()}; }
+  std::size_t bytes() const { return boxes.bytes() + (numbers.size() + radius.size()) * sizeof(float); }
 };
 
 namespace {
+
+// The rows of a leaf's numbers.
+template <class Number>
+std::array<Number*, 4> rows_of(Number* numbers, std::size_t first, std::size_t size) {
+  Number* const row = numbers + 4 * first;
+  return {row, row + size, row + 2 * size, row + 3 * size};
+}
+// visit(first, size) for each leaf.
+template <class Visit>
+void each_leaf(const BoundedTreeArrays& tree, const Visit& visit) {
+  const auto look_at = [&](TreeReference reference) {
+    if (reference != empty_reference && refers_to_leaf(reference))
+      visit(leaf_of(reference).block, leaf_of(reference).size);
+  };
+  look_at(tree.root);
+  for (const WideNode& node : tree.nodes)
+    for (std::size_t slot = 0; slot < tree_width; ++slot)
+      if ((node.occupied >> slot & 1u) != 0) look_at(node.child[slot]);
+}
 
 // A test's decision and its t are wrong by no more than a share of the distance from the origin to the centre and of
 // the radius: 32u and 32u, u = 2^-24; sqrt(3) of the largest coordinate. See SphereTest.
@@ -43,74 +63,38 @@ SphereTreeArrays leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions 
   options.slack = 0.0f, options.max_in_leaf = tree_width;
   SphereTreeArrays leaves{build_box_tree("sphere tree", boxes, options), {}, {}};
   leaves.boxes.slack = sphere_slack;
-  for (std::vector<float>& row : leaves.row) row.reserve(leaves.boxes.order.size());
-  for (const std::uint32_t i : leaves.boxes.order) {
-    for (std::size_t axis = 0; axis < 3; ++axis) leaves.row[axis].push_back(spheres[i].centre[axis]);
-    leaves.row[3].push_back(signed_square(spheres[i].radius));
-    leaves.radius.push_back(spheres[i].radius);
-  }
+  const auto& order = leaves.boxes.order;
+  leaves.numbers.resize(4 * order.size() + sphere_room);
+  for (const std::uint32_t i : order) leaves.radius.push_back(spheres[i].radius);
+  each_leaf(leaves.boxes, [&](std::size_t first, std::size_t size) {
+    const auto row = rows_of(leaves.numbers.data(), first, size);
+    for (std::size_t k = 0; k < size; ++k) {
+      const Sphere& sphere = spheres[order[first + k]];
+      for (std::size_t axis = 0; axis < 3; ++axis) row[axis][k] = sphere.centre[axis];
+      row[3][k] = signed_square(sphere.radius);
+    }
+  });
   return leaves;
 }
 
-struct SphereVisit {
-  const SphereTreeArrays& spheres;
-  const SphereRow& row;
-
-  static void leaf(void* context, const LeafVisit& leaf) {
-    static_cast<const SphereVisit*>(context)->at(leaf);
-  }
-
- private:
-  void at(const LeafVisit& leaf) const {
-    const float* rows[4];
-    for (std::size_t k = 0; k < 4; ++k) rows[k] = spheres.row[k].data() + leaf.first;
-    const auto all = static_cast<std::uint8_t>((1u << leaf.primitives.size()) - 1);
-    for (const std::uint32_t i : leaf.rays) {
-      const std::uint8_t skipped = skipped_of(leaf, i);
-      if (leaf.after != nullptr) {
-        keep_both_sides(leaf, i, rows, all, skipped);
-        continue;
-      }
-      if (skipped != 0) keep_both_sides(leaf, i, rows, skipped, skipped);
-      const auto others = static_cast<std::uint8_t>(all & ~skipped);
-      Hit hit;
-      row.closest_of_spheres(leaf.ray[i], rows, leaf.primitives.size(), skipped == 0 ? nullptr : &others,
-                             hit);
-      if (!hit) continue;
-      hit.primitive = leaf.primitives[hit.primitive];
-      leaf.keep(i, hit);
-    }
-  }
-  // The bit of the sphere that the ray skips; 0: none of this leaf.
-  static std::uint8_t skipped_of(const LeafVisit& leaf, std::uint32_t i) {
-    for (std::size_t k = 0; k < leaf.primitives.size(); ++k)
-      if (leaf.skips(i, leaf.primitives[k])) return static_cast<std::uint8_t>(1u << k);
-    return 0;
-  }
-  // Keeps both hits of each of `some` spheres that closest_of_spheres() would find, from the same numbers; of a skipped
-  // sphere the one farther from the begin of the segment: a ray that begins on a sphere has the other one there.
-  void keep_both_sides(const LeafVisit& leaf, std::uint32_t i, const float* const (&rows)[4],
-                       std::uint8_t some, std::uint8_t skipped) const {
-    const Ray& ray = leaf.ray[i];
-    std::uint8_t is_hit = 0;
-    float t[2][tree_width];
-    row.distances_of_spheres(ray, rows, leaf.primitives.size(), &some, &is_hit, t[0], t[1]);
-    for (std::size_t k = 0; k < leaf.primitives.size(); ++k) {
-      if ((is_hit & some & 1u << k) == 0) continue;
-      const bool skips_near = std::abs(t[0][k] - ray.tmin) <= std::abs(t[1][k] - ray.tmin);
-      for (std::size_t side = 0; side < 2; ++side)
-        if (((skipped & 1u << k) == 0 || (side == 0) != skips_near) && t[side][k] >= ray.tmin &&
-            t[side][k] <= ray.tmax && std::isfinite(t[side][k]))
-          leaf.keep(i, {t[side][k], 0, 0, leaf.primitives[k]});
-    }
-  }
-};
-
 const SphereTreeArrays no_spheres;
 
+// On this thread, one by one: rays that come to a leaf together gain nothing that lists of them do not lose. Measured.
 void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, const GeometryBatch& batch) {
-  const SphereVisit visit{spheres, kernels.spheres.row[0][0]};
-  trace_boxes(spheres.boxes, kernels, {SphereVisit::leaf, const_cast<SphereVisit*>(&visit)}, batch);
+  if (spheres.boxes.root == empty_reference) return clear_answers(batch);
+  const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
+  const TreeView tree = spheres.boxes.view();
+  const SphereLeaves leaves = spheres.leaves();
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Ray& ray = batch.rays[i];
+    const SphereQuery asked{batch.tmax != nullptr ? batch.tmax[i] : ray.tmax,
+                            batch.skip != nullptr ? batch.skip[i] : no_primitive,
+                            batch.after != nullptr ? batch.after + i : nullptr, batch.counters};
+    if (batch.hits != nullptr)
+      batch.hits[i] = row.closest_sphere(tree, leaves, ray, asked);
+    else
+      batch.occluded[i] = row.any_sphere(tree, leaves, ray, asked) ? 1 : 0;
+  }
 }
 
 struct SphereGeometry : Geometry {
@@ -131,11 +115,14 @@ struct SphereGeometry : Geometry {
   }
   // Under their numbers; those that nothing hits, and of which the tree has nothing, as empty ones.
   GeometryRecord record(std::size_t, std::vector<Sphere>& to) const override {
-    const auto& [boxes, row, radius] = leaves();
-    const std::size_t first = to.size();
-    to.resize(first + boxes.size, Sphere{{0, 0, 0}, -1});
-    for (std::size_t i = 0; i < boxes.order.size(); ++i)
-      to[first + boxes.order[i]] = {{row[0][i], row[1][i], row[2][i]}, radius[i]};
+    const auto& [boxes, numbers, radius] = leaves();
+    const std::size_t begin = to.size();
+    to.resize(begin + boxes.size, Sphere{{0, 0, 0}, -1});
+    each_leaf(boxes, [&](std::size_t first, std::size_t size) {
+      const auto row = rows_of(numbers.data(), first, size);
+      for (std::size_t k = 0; k < size; ++k)
+        to[begin + boxes.order[first + k]] = {{row[0][k], row[1][k], row[2][k]}, radius[first + k]};
+    });
     return {sphere_geometry, static_cast<std::uint32_t>(boxes.size)};
   }
 
@@ -172,6 +159,39 @@ SphereTree& SphereTree::operator=(SphereTree&&) noexcept = default;
 SphereTree::SphereTree(std::span<const Sphere> spheres, const BoundedBuildOptions& options)
     : tree_(std::make_unique<SphereTreeArrays>(leaves_of(spheres, options))) {}
 
+namespace {
+
+// The kernels of calls with one ray, by options.
+class KernelsOfSpheres {
+ public:
+  // `spheres`: null if there are none to be used.
+  KernelsOfSpheres(const SphereTreeArrays* spheres, const VisitOptions& options)
+      : spheres_(spheres), options_(options) {
+    if (spheres != nullptr) row_ = &kernels_of(checked_path(options.path)).queries.plain;
+  }
+  explicit operator bool() const { return spheres_ != nullptr; }
+  std::size_t batch_size() const { return min_batch; }
+  template <class Answer>
+  bool takes(const FewRays<Ray, Answer>&) const {
+    return true;
+  }
+  Hit closest(const Ray& ray, std::size_t i) const {
+    return row_->closest_sphere(spheres_->boxes.view(), spheres_->leaves(), ray,
+                                {ray.tmax, skipped_of(options_, i)});
+  }
+  bool any(const Ray& ray, std::size_t i) const {
+    return row_->any_sphere(spheres_->boxes.view(), spheres_->leaves(), ray,
+                            {ray.tmax, skipped_of(options_, i)});
+  }
+
+ private:
+  const SphereTreeArrays* spheres_;
+  const VisitOptions& options_;
+  const QueryKernels* row_ = nullptr;
+};
+
+}  // namespace
+
 template <>
 class RayDoor<SphereTree> {
  public:
@@ -180,8 +200,17 @@ class RayDoor<SphereTree> {
   explicit RayDoor(const SphereTree& tree)
       : tree_(tree), spheres_(TreeAccess::arrays(tree) != nullptr ? *TreeAccess::arrays(tree) : no_spheres) {}
 
-  Hit closest(const Ray& ray) const { return closest_by(ray, {}); }
-  bool any(const Ray& ray) const { return any_by(ray, {}); }
+  Hit closest(const Ray& ray) const {
+    return is_quick() ? kernels({}, 0, true).closest(ray, 0) : closest_by(ray, {});
+  }
+  bool any(const Ray& ray) const { return is_quick() ? kernels({}, 0, true).any(ray, 0) : any_by(ray, {}); }
+  KernelsOfSpheres kernels(const VisitOptions& options, std::size_t rays, bool are_default = false) const {
+    const bool are_usual =
+        is_quick() && (are_default || (options.threads >= 0 && options.counters == nullptr &&
+                                       options.skip.count == (options.skip.first != nullptr ? rays : 0) &&
+                                       options.after.first == nullptr && options.after.count == 0));
+    return {are_usual ? &spheres_ : nullptr, options};
+  }
   Hit closest_by(const Ray& ray, const VisitOptions& options) const {
     Hit hit;
     const VisitOptions by = for_one_ray(options);
@@ -217,6 +246,9 @@ class RayDoor<SphereTree> {
   }
 
  private:
+  // Whether a call with one ray may go straight to the kernel: there are spheres, and nothing traps.
+  bool is_quick() const { return spheres_.boxes.root != empty_reference && !QuietFloats::are_wanted(); }
+
   const SphereTree& tree_;
   const SphereTreeArrays& spheres_;
 };

@@ -31,6 +31,30 @@ struct Visit {
   }
 };
 
+// A batch of one ray, by the walk of calls with one.
+struct VisitOfOne {
+  const BoundedTreeArrays& tree;
+  const LeafCallback& test;
+  const GeometryBatch batch;
+
+  void trace(const QueryKernels& row) {
+    clear_answers(batch);
+    row.visit_ray(tree.view(), batch.rays[0], batch.tmax != nullptr ? batch.tmax[0] : batch.rays[0].tmax,
+                  leaf, this);
+  }
+
+ private:
+  static float leaf(void* context, std::uint32_t first, std::uint32_t size) {
+    const auto& [tree, test, batch] = *static_cast<const VisitOfOne*>(context);
+    static constexpr std::uint32_t number[1] = {0};
+    test.visit(test.context,
+               {std::span(tree.order).subspan(first, size), first, number, batch.rays, batch.hits,
+                batch.occluded, batch.skip, batch.after, batch.instance, batch.numbers});
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    return batch.hits != nullptr ? batch.hits->t : *batch.occluded != 0 ? -infinity : infinity;
+  }
+};
+
 // Some of the rays.
 GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t size) {
   GeometryBatch part = batch;
@@ -46,6 +70,11 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
 
 void visit_part(const BoundedTreeArrays& tree, const QueryKernels& row, const LeafCallback& test,
                 const GeometryBatch& batch, bool share_origin, void* scratch) {
+  // Rays that meet many boxes find their hits soonest if each goes to its nearest leaf first.
+  if (tree.overlaps && !share_origin && batch.hits != nullptr && batch.counters == nullptr) {
+    for (std::size_t i = 0; i < batch.size; ++i) VisitOfOne{tree, test, part_of(batch, i, 1)}.trace(row);
+    return;
+  }
   clear_answers(batch);
   const Visit visit{tree, test, batch};
   VisitBatch boxes;
@@ -62,6 +91,7 @@ void trace_boxes(const BoundedTreeArrays& tree, const KernelTable& kernels, cons
                  const GeometryBatch& batch) {
   if (tree.root == empty_reference || batch.size == 0) return clear_answers(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
+  if (batch.size == 1 && batch.counters == nullptr) return VisitOfOne{tree, test, batch}.trace(row);
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool looks = batch.may_be_packets && batch.size >= min_shared_point;
   const std::size_t bytes = kernels.traversal.scratch_bytes(TraversalMode::stream, batch.size);

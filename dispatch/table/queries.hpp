@@ -73,6 +73,23 @@ struct VisitBatch {
   TraceCounters* counters = nullptr;
 };
 
+// Spheres in the leaves of a tree over their boxes. A leaf that begins at `first` has rows of its size from number
+// 4 · first on: the coordinates of centres, and signed squares of radii. Behind the last leaf sphere_room more numbers
+// may be read.
+inline constexpr std::size_t sphere_room = 16;
+struct SphereLeaves {
+  const float* numbers;
+  const std::uint32_t* primitives;
+};
+// How one ray is asked for. No box that begins behind `end`, not NaN, is looked at. The skipped sphere has only the hit
+// that is farther from the begin of the segment; and if `after` is not null, only hits after it count.
+struct SphereQuery {
+  float end;
+  std::uint32_t skipped = no_primitive;
+  const Hit* after = nullptr;
+  TraceCounters* counters = nullptr;  // of the counted row
+};
+
 // A search of one ray whose caller keeps some hits, of the sides that `facing` names, but of the skipped primitive, by
 // t and then by primitives. The function is asked about each of these that would be the best so far. If the tree has a
 // triangle in several leaves, it may be asked again.
@@ -112,6 +129,15 @@ struct QueryKernels {
   void (*closest_after)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.
   void (*visit)(const TreeView& tree, const VisitBatch& batch);
+  // One ray to the leaves of such a tree, nearer ones first, up to `end`, not NaN. visit(context, first, size) returns
+  // the t of the nearest hit so far; -infinity ends the walk. Null in the counted row.
+  void (*visit_ray)(const TreeView& tree, const Ray& ray, float end,
+                    float (*visit)(void* context, std::uint32_t first, std::uint32_t size), void* context);
+  // One ray among spheres; tree.origin_share is the slack of their test.
+  Hit (*closest_sphere)(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
+                        const SphereQuery& asked);
+  bool (*any_sphere)(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
+                     const SphereQuery& asked);
 };
 struct AllQueryKernels {
   QueryKernels plain, counted;  // counted: null where the build was asked for no counters

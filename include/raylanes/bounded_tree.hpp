@@ -151,6 +151,36 @@ void visit_with(void* context, const LeafVisit& leaf) {
   }
 }
 
+// A call with one ray: the test in the loop of a leaf, whose primitives lie from `first` on in the order. Answers
+// are the t of the nearest hit so far, and -infinity once the search is done.
+struct SearchInOrder {
+  const std::uint32_t* order = nullptr;
+  std::uint32_t skipped = no_primitive;
+};
+template <class Test, bool only_decides>
+struct SearchOfRay : SearchInOrder {
+  Test& test;
+  const Ray& ray;
+  Hit best = {};
+
+  SearchOfRay(Test& of_one, const Ray& of_call) : test(of_one), ray(of_call) {}
+
+  static float at_leaf(void* context, std::uint32_t first, std::uint32_t size) {
+    auto& search = *static_cast<SearchOfRay*>(static_cast<SearchInOrder*>(context));
+    for (const std::uint32_t primitive : std::span(search.order + first, size)) {
+      Hit found;
+      if (primitive == search.skipped || !search.test(primitive, search.ray, found)) continue;
+      found.primitive = primitive;
+      if constexpr (only_decides) {
+        search.best = found;
+        return -std::numeric_limits<float>::infinity();
+      }
+      if (is_nearer(found, search.best)) search.best = found;
+    }
+    return search.best.t;
+  }
+};
+
 }  // namespace detail
 
 /// How rays visit a BoundedTree or a SphereTree.
@@ -206,11 +236,21 @@ class BoundedTree {
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test> Hit closest(const Ray& ray, Test&& test,
                                                              const VisitOptions& options = {})
-  const { return closest(ray, detail::visit_with<Test>, address_of(test), options); }
+  const {
+    if constexpr (!LeafTest<Test>) {
+      detail::SearchOfRay<std::remove_reference_t<Test>, false> search(test, ray);
+      if (visit_ray(ray, search.at_leaf, search, options)) return search.best;
+    }
+    return closest(ray, detail::visit_with<Test>, address_of(test), options);
+  }
   /// Returns whether your test finds a hit of the ray. Throws as closest() does.
   template <class Test>
   requires PrimitiveTest<Test> || LeafTest<Test>
   bool occluded(const Ray& ray, Test&& test, const VisitOptions& options = {}) const {
+    if constexpr (!LeafTest<Test>) {
+      detail::SearchOfRay<std::remove_reference_t<Test>, true> search(test, ray);
+      if (visit_ray(ray, search.at_leaf, search, options)) return static_cast<bool>(search.best);
+    }
     return occluded(ray, detail::visit_with<Test>, address_of(test), options);
   }
   /// Finds the nearest hit of each ray by a plain function, which gets `context`.
@@ -239,6 +279,10 @@ class BoundedTree {
   static void* address_of(Test& test) {
     return const_cast<void*>(static_cast<const void*>(std::addressof(test)));
   }
+  // Calls visit(&search, first, size) for the leaves that the ray comes to; false if the options ask for more.
+  bool visit_ray(const Ray& ray, float (*visit)(void* context, std::uint32_t first, std::uint32_t size),
+                 detail::SearchInOrder& search, const VisitOptions& options) const;
+
   friend class Scene;
   std::unique_ptr<struct BoundedTreeArrays> tree_;  // null: no boxes
 };

@@ -7,6 +7,7 @@
 #include "hit_after.hpp"
 #include "hit_lists.hpp"
 #include "list_streams.hpp"
+#include "spheres_in_tree.hpp"
 #include "visit_packets.hpp"
 
 namespace raylanes {
@@ -21,6 +22,8 @@ constexpr QueryKernels kernels_with() {
   kernels.list_along_axes = list_all<WalksAlongAxes, HitsAsStored, Counters>;
   kernels.closest_after = hits_after<Counters>;
   kernels.visit = visit_boxes<Counters>;
+  kernels.closest_sphere = closest_sphere<Counters>;
+  kernels.any_sphere = any_sphere<Counters>;
   return kernels;
 }
 
@@ -34,6 +37,7 @@ constexpr AllQueryKernels all_queries() {
   kernels.plain.kept = {closest_kept, any_kept};
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
+  kernels.plain.visit_ray = visit_ray;
   if constexpr (RAYLANES_COUNTERS) {
     kernels.counted = kernels_with<CountTests>();
     kernels.counted.ruled_single = {kernels.counted.closest_after,

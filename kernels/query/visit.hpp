@@ -4,6 +4,7 @@
 
 #include "../../dispatch/table/queries.hpp"
 #include "../traverse/streams.hpp"
+#include "../traverse/walk_boxes.hpp"
 
 namespace raylanes {
 namespace {
@@ -17,16 +18,39 @@ inline void visit_rays(const VisitBatch& batch, TreeReference leaf, const std::u
               {leaf_of(leaf).block, static_cast<std::uint32_t>(leaf_size(leaf)), rays, tmax, count});
 }
 
-// The rest of a ray that goes on alone.
-struct VisitQuery : NearestFirst {
+// A ray that goes alone: its leaves ask a function.
+struct NearestVisit : NearestFirst {
   float tmax;
   float box_tmax() const { return tmax; }
 };
-// Returns what is left of it then.
+struct AskedLeaves {
+  float (*ask)(void* context, std::uint32_t first, std::uint32_t size);
+  void* context;
+
+  bool visit(TreeReference leaf, NearestVisit& query) const {
+    const float t = ask(context, leaf_of(leaf).block, leaf_of(leaf).size), end = end_after(t);
+    query.tmax = end < query.tmax ? end : query.tmax;
+    return t < -largest_t;
+  }
+  bool visit_unusual(TreeReference leaf, NearestVisit& query) const { return visit(leaf, query); }
+};
+// From the root. A tree of one leaf has no box that a ray could miss.
+[[maybe_unused, gnu::flatten]] void visit_ray(const TreeView& tree, const Ray& ray, float end,
+                                              float (*ask)(void* context, std::uint32_t first,
+                                                           std::uint32_t size),
+                                              void* context) {
+  if (refers_to_leaf(tree.root) && !is_valid(ray)) return;
+  NearestVisit query{{}, finite_tmax(end)};
+  NoCounters counters(query);
+  walk_boxes(tree, ray, tree.origin_share * largest_of(ray.origin) + tree.padding, AskedLeaves{ask, context},
+             query, counters);
+}
+
+// The rest of a ray of a batch that goes on alone. Returns what is left of it then.
 template <class Boxes, class Counters>
 inline float visit_single(const TreeView& tree, const VisitBatch& batch, const Boxes& boxes,
                           std::uint32_t number, float tmax, Counters& counters) {
-  VisitQuery query{{}, tmax};
+  NearestVisit query{{}, tmax};
   walk_nodes(tree, boxes, query, counters, [&](TreeReference leaf) {
     counters.leaf();
     visit_rays(batch, leaf, &number, &query.tmax, 1);

@@ -34,15 +34,15 @@ inline DirectionScale<V> scale_of(const V (&direction)[3]) {
 }
 
 // t counts `unit` times as much.
-struct ScaledRay {
-  Vec3<Floats<W>> origin, direction;
-  Vec3<Floats<W>> against;   // −direction / |direction|²
-  Floats<W> inverse_square;  // 1 / |direction|²
-  Floats<W> square;          // |direction|²
-  Floats<W> tmin, tmax, unit;
+template <class V>
+struct ScaledRayOf {
+  Vec3<V> origin, direction;
+  Vec3<V> against;   // −direction / |direction|²
+  V inverse_square;  // 1 / |direction|²
+  V square;          // |direction|²
+  V tmin, tmax, unit;
 
-  ScaledRay(const Floats<W> (&o)[3], const Floats<W> (&d)[3], Floats<W> first, Floats<W> last,
-            const DirectionScale<Floats<W>>& s)
+  ScaledRayOf(const V (&o)[3], const V (&d)[3], V first, V last, const DirectionScale<V>& s)
       : origin(vec3(o)),
         direction{d[0] * s.unit, d[1] * s.unit, d[2] * s.unit},
         inverse_square(s.inverse_square),
@@ -50,16 +50,20 @@ struct ScaledRay {
         tmin(first * s.scale),
         tmax(last * s.scale),
         unit(s.unit) {
-    Floats<W> back = -s.inverse_square;
+    V back = -s.inverse_square;
     against = {direction.x * back, direction.y * back, direction.z * back};
   }
 };
 
+using ScaledRay = ScaledRayOf<Floats<W>>;
+
 // The two distances at which a line meets a sphere, where it does.
-struct SphereDistances {
-  FloatMask<W> hit;
-  Floats<W> near, far;
+template <class V>
+struct SphereDistancesOf {
+  decltype(V() < V()) hit;
+  V near, far;
 };
+using SphereDistances = SphereDistancesOf<Floats<W>>;
 
 }  // namespace
 }  // namespace raylanes

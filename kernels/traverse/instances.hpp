@@ -2,10 +2,10 @@
 // instance, in the space of the instance. An instance has the hits of its tree, by the exact test.
 #pragma once
 
-#include "../../dispatch/bits.hpp"
 #include "../../dispatch/table/instances.hpp"
 #include "fused/calls.hpp"
 #include "transform.hpp"
+#include "walk_boxes.hpp"
 
 namespace raylanes {
 namespace {
@@ -23,12 +23,6 @@ struct AnyInstance : AsStored {
   bool found = false;
   float box_tmax() const { return tmax; }
 };
-
-// The tmax for hits before or at t, which may be infinite.
-inline float end_after(float t) {
-  return t <= largest_t ? float_above(t < -largest_t ? -largest_t : t)
-                        : std::numeric_limits<float>::infinity();
-}
 
 #if defined(__AVX2__) && defined(__FMA__)
 // A ray's numbers as doubles, each in all lanes.
@@ -188,29 +182,11 @@ class InstanceLeaves {
 };
 
 template <class Query>
-[[gnu::noinline]] void walk_unusual_instances(const TreeView& tree, const Ray& ray, float padding,
-                                              const InstanceLeaves<Query>& leaves, Query& query) {
-  if (!is_valid(ray)) return;
-  const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds, padding);
-  NoCounters counters(query);
-  walk_nodes(tree, NodeTest<node_lanes>(slabs, ray.tmin), query, counters,
-             [&](TreeReference leaf) { return leaves.visit_unusual(leaf, query); });
-}
-
-template <class Query>
 [[gnu::noinline, gnu::flatten]] void walk_instances(const InstancesView& scene, const Ray& ray,
                                                     std::uint32_t mask, Query& query) {
-  const TreeView& tree = scene.tree;
   const InstanceLeaves<Query> leaves(scene, ray, mask);
-  const float padding = tree.origin_share * largest_of(ray.origin);
-#if defined(__AVX2__) && defined(__FMA__)
-  FusedRay nodes;
-  if (refers_to_leaf(tree.root) || nodes.template prepare<InstanceTest>(tree, ray, padding)) [[likely]] {
-    walk_fused(tree, nodes, leaves, query);
-    return;
-  }
-#endif
-  walk_unusual_instances(tree, ray, padding, leaves, query);
+  NoCounters counters(query);
+  walk_boxes(scene.tree, ray, scene.tree.origin_share * largest_of(ray.origin), leaves, query, counters);
 }
 
 [[maybe_unused]] void closest_of_instances(const InstancesView& scene, const Ray& ray, std::uint32_t mask,

@@ -3,7 +3,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "../support/same_bytes.hpp"
-#include "traced_rows.hpp"
+#include "box_rows.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -139,37 +139,6 @@ void check_lists_along_axes(EveryRow& every, Lister<float> lister, const std::st
   expect_recorded("floats lists along axes", hash, way);
 }
 
-// --- The rays that came to each leaf: one that nothing stops is at least at the leaves of its hits.
-void check_visits(EveryRow& every, const QueryKernels& kernels, std::size_t bytes, bool share_origin) {
-  if (!every.offers(kernels.visit)) return;
-  const TreeView tree = small_view<float>();
-  const std::vector<Ray> rays = some_rays<float>(share_origin ? Together::from_eye : Together::no);
-  std::vector<Hit> hits(most);
-  TraceCounters counters;
-  TraceBatch closest;
-  closest.rays = rays.data(), closest.size = most, closest.hits = hits.data(), closest.counters = &counters;
-  kernels.closest_after(tree, closest);
-  std::vector<std::set<std::uint32_t>> seen(most);
-  Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
-  VisitBatch batch;
-  batch.rays = rays.data(), batch.size = most, batch.scratch = scratch.take<std::byte>(bytes);
-  batch.counters = &counters, batch.context = &seen, batch.share_origin = share_origin;
-  batch.visit = [](void* context, const VisitedLeaf& leaf) {
-    for (std::size_t k = 0; k < leaf.count; ++k)
-      EXPECT_TRUE((*static_cast<decltype(seen)*>(context))[leaf.rays[k]].insert(leaf.first).second);
-  };
-  kernels.visit(tree, batch);
-  const auto* const blocks = static_cast<const LeafBlock<9>*>(tree.blocks);
-  for (std::size_t i = 0; i < most; ++i)
-    EXPECT_TRUE(!hits[i] || std::ranges::any_of(seen[i],
-                                                [&](std::uint32_t block) {
-                                                  return std::ranges::count(blocks[block].primitive,
-                                                                            hits[i].primitive) > 0;
-                                                }))
-        << "ray " << i;
-  EXPECT_GT(std::ranges::count_if(hits, [](const Hit& hit) { return bool(hit); }), 3);
-}
-
 // A ray in a call of its own; and the triangle of its hit, found again from its t on.
 Tracer<float> by_chosen_calls(const RuledCallRow& row, const TreeView& tree) {
   return by_calls<float>(
@@ -225,6 +194,8 @@ void check_queries(EveryRow& every, const QueryKernels& kernels, const Traversal
   check_lists_along_axes(every, kernels.list_along_axes, way + "list_along_axes");
   check_visits(every, kernels, traversal.scratch_bytes(TraversalMode::stream, most), false);
   check_visits(every, kernels, traversal.scratch_bytes(TraversalMode::packet, most), true);
+  check_visits_of_rays(every, kernels);
+  check_spheres(every, kernels);
 }
 
 TEST_P(EveryRow, of_queries) {

@@ -1,0 +1,141 @@
+// One ray through a tree whose leaves are spheres: those of a leaf side by side in lanes, by the test perpendicular, so
+// that the hits are those of all spheres in one array.
+#pragma once
+
+#include "../../dispatch/table/queries.hpp"
+#include "../sphere/perpendicular.hpp"
+#include "../traverse/walk_boxes.hpp"
+
+namespace raylanes {
+namespace {
+
+struct NearestSphere : NearestFirst {
+  float tmax;
+  Hit best = {};
+  float box_tmax() const { return tmax; }
+};
+struct AnySphere : AsStored {
+  static constexpr bool only_decides = true;
+  float tmax;
+  bool found = false;
+  float box_tmax() const { return tmax; }
+};
+
+class SpheresOfRay {
+  using V = Floats<node_lanes>;
+  using Test = PerpendicularInLanes<Grade::reproducible, node_lanes>;
+
+ public:
+  SpheresOfRay(const SphereLeaves& spheres, const Ray& ray, const SphereQuery& asked)
+      : spheres_(spheres), ray_(scaled(ray)), asked_(asked), tmin_(ray.tmin), tmax_(finite_tmax(ray.tmax)) {}
+
+  template <class Query>
+  bool visit(TreeReference leaf, Query& query) const {
+    const LeafReference range = leaf_of(leaf);
+    for (std::uint32_t k = 0; k < range.size; k += node_lanes)
+      if (visit(range, k, query)) return true;
+    return false;
+  }
+  template <class Query>
+  bool visit_unusual(TreeReference leaf, Query& query) const {
+    return visit(leaf, query);
+  }
+
+ private:
+  // A ray that is not valid hits nothing.
+  static ScaledRayOf<V> scaled(const Ray& ray) {
+    V o[3], d[3];
+    Floats<1> direction[3];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      o[axis] = V(ray.origin[axis]), d[axis] = V(ray.direction[axis]), direction[axis] = ray.direction[axis];
+    const DirectionScale<Floats<1>> s = scale_of(direction);
+    const bool valid = is_valid(ray);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    return {o,
+            d,
+            V(valid ? ray.tmin : nan),
+            V(valid ? ray.tmax : nan),
+            {V(s.scale.raw), V(s.unit.raw), V(s.square.raw), V(s.inverse_square.raw)}};
+  }
+
+  // The spheres of a leaf from number k on.
+  template <class Query>
+  bool visit(LeafReference leaf, std::uint32_t k, Query& query) const {
+    const float* const first = spheres_.numbers + std::size_t{4} * leaf.block + k;
+    const V sphere[4] = {V::load(first), V::load(first + leaf.size), V::load(first + 2 * leaf.size),
+                         V::load(first + 3 * leaf.size)};
+    const std::uint32_t size = leaf.size - k, occupied = (2u << (size - 1)) - 1u;
+    if ((bits(Test::hits(ray_, sphere)) & occupied) == 0) return false;
+    const SphereDistancesOf<V> d = Test::distances(ray_, sphere);
+    auto near = d.near >= V(tmin_), far = d.far >= V(tmin_);
+    if (asked_.skipped != no_primitive || asked_.after != nullptr) [[unlikely]]
+      admit(leaf.block + k, size, d, near, far);
+    const V t = select(near, d.near, d.far);
+    const auto hit = d.hit & (near | far) & (t <= V(tmax_));
+    if constexpr (Query::only_decides) {
+      return query.found = (bits(hit) & occupied) != 0;
+    } else {
+      const std::uint32_t hits = bits(hit & (t <= V(query.best.t))) & occupied;
+      if (hits != 0) keep(t, hits, spheres_.primitives + leaf.block + k, query);
+      return false;
+    }
+  }
+  static void keep(V t, std::uint32_t hits, const std::uint32_t* primitives, NearestSphere& query) {
+    float of_lane[node_lanes];
+    t.store(of_lane);
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = std::countr_zero(hits);
+      if (is_better(of_lane[lane], primitives[lane], query.best))
+        query.best = {of_lane[lane], 0, 0, primitives[lane]};
+    }
+    const float end = end_after(query.best.t);
+    query.tmax = end < query.tmax ? end : query.tmax;
+  }
+  // Leaves the sides that count.
+  [[gnu::noinline]] void admit(std::uint32_t first, std::uint32_t size, const SphereDistancesOf<V>& d,
+                               FloatMask<node_lanes>& near, FloatMask<node_lanes>& far) const {
+    std::uint32_t skipped = 0, behind = 0;
+    for (std::uint32_t i = 0; i < size && i < node_lanes; ++i) {
+      const std::uint32_t primitive = spheres_.primitives[first + i];
+      skipped |= std::uint32_t{primitive == asked_.skipped} << i;
+      behind |= std::uint32_t{asked_.after != nullptr && primitive > asked_.after->primitive} << i;
+    }
+    const std::uint32_t skips_near = bits(abs(d.near - V(tmin_)) <= abs(d.far - V(tmin_)));
+    std::uint32_t nears = bits(near) & ~(skipped & skips_near), fars = bits(far) & ~(skipped & ~skips_near);
+    if (asked_.after != nullptr) {
+      const V last(asked_.after->t);
+      nears &= bits(d.near > last) | (bits(d.near == last) & behind);
+      fars &= bits(d.far > last) | (bits(d.far == last) & behind);
+    }
+    near = FloatMask<node_lanes>::from_bits(nears), far = FloatMask<node_lanes>::from_bits(fars);
+  }
+
+  const SphereLeaves& spheres_;
+  const ScaledRayOf<V> ray_;
+  const SphereQuery& asked_;
+  const float tmin_, tmax_;
+};
+
+template <class Counters, class Query>
+[[gnu::noinline, gnu::flatten]] void walk_spheres(const TreeView& tree, const SphereLeaves& spheres,
+                                                  const Ray& ray, const SphereQuery& asked, Query& query) {
+  Counters counters(asked);
+  walk_boxes(tree, ray, tree.origin_share * largest_of(ray.origin), SpheresOfRay(spheres, ray, asked), query,
+             counters);
+}
+template <class Counters>
+Hit closest_sphere(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
+                   const SphereQuery& asked) {
+  NearestSphere query{{}, finite_tmax(asked.end)};
+  walk_spheres<Counters>(tree, spheres, ray, asked, query);
+  return query.best;
+}
+template <class Counters>
+bool any_sphere(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray, const SphereQuery& asked) {
+  AnySphere query{{}, finite_tmax(asked.end)};
+  walk_spheres<Counters>(tree, spheres, ray, asked, query);
+  return query.found;
+}
+
+}  // namespace
+}  // namespace raylanes
