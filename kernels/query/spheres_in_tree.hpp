@@ -1,5 +1,5 @@
-// One ray through a tree whose leaves are spheres: those of a leaf side by side in lanes, by the test perpendicular, so
-// that the hits are those of all spheres in one array.
+// One ray through a tree whose leaves are spheres, which are side by side in lanes; by the test perpendicular, so that
+// hits are as those among all spheres in one array.
 #pragma once
 
 #include "../../dispatch/table/queries.hpp"
