@@ -177,6 +177,12 @@ raylanes_status raylanes_scene_refit(raylanes_scene* scene, std::uint32_t geomet
   });
 }
 
+raylanes_status raylanes_scene_set_triangle_masks(raylanes_scene* scene, std::uint32_t geometry,
+                                                  const std::uint32_t* masks, std::size_t n) {
+  return status_of(
+      [&] { changed(scene).set_triangle_masks(geometry, span_of<const std::uint32_t>("masks", masks, n)); });
+}
+
 raylanes_status raylanes_scene_place(raylanes_scene* scene, std::uint32_t geometry, const float* transform,
                                      std::uint32_t mask, std::uint32_t* instance) {
   return tell("instance", instance,

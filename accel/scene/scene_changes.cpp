@@ -67,6 +67,7 @@ void SceneParts::replace(std::uint32_t number, std::shared_ptr<Geometry> geometr
     throw std::invalid_argument("scene: geometry " + std::to_string(number) +
                                 " is a scene, which nothing replaces");
   replaced = std::move(geometry);
+  if (number < words.size()) words[number] = nullptr;
   has_changed(number);
 }
 std::span<Instance> SceneParts::placed(std::uint32_t instance) {

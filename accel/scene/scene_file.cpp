@@ -43,6 +43,10 @@ InstanceRecord record_of(const Instance& instance) {
 
 Tables tables_of(const SceneParts& scene) {
   Tables tables;
+  for (std::uint32_t i = 0; i < scene.geometries.size(); ++i)
+    if (scene.words_of(i) != nullptr)
+      throw std::invalid_argument("scene: geometry " + std::to_string(i) +
+                                  " has masks of triangles, which no file holds");
   for (const auto& geometry : scene.geometries)
     tables.geometries.push_back(geometry->record(tables.geometries.size(), tables.spheres));
   for (const Instance& instance : scene.instances) tables.instances.push_back(record_of(instance));

@@ -54,8 +54,13 @@ std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
   return tree;
 }
 
+// The masks of a geometry's triangles.
+using Words = std::vector<std::uint32_t>;
+
 struct SceneParts {
   std::vector<std::shared_ptr<Geometry>> geometries;
+  std::vector<std::shared_ptr<const Words>>
+      words;  // of the first geometries; null: all their triangles are there
   std::vector<Instance> instances;
   std::vector<bool> is_changed;  // of geometries: replaced or refitted since the last update
   std::vector<std::shared_ptr<CommonTree>> commons;  // of the last update
@@ -75,6 +80,20 @@ struct SceneParts {
   // Whether it has spheres, primitives of the caller's, or meshes whose trees are not built yet, which no kernel walks.
   bool has_others() const { return !tops.empty() && tops.back().walked.entries == nullptr; }
   bool has_only_others() const { return !traces_common && has_others() && tops[0].walked.entries == nullptr; }
+
+  // The masks of the triangles of a geometry; null if it has none.
+  const Words* words_of(std::uint32_t geometry) const {
+    return geometry < words.size() ? words[geometry].get() : nullptr;
+  }
+  bool has_words() const {
+    return std::ranges::any_of(words, [](const auto& of_geometry) { return of_geometry != nullptr; });
+  }
+  // The same for a call with this mask.
+  TriangleMasks masks_of(std::uint32_t geometry, std::uint32_t of_mask) const {
+    const Words* const of_geometry = words_of(geometry);
+    return of_geometry != nullptr ? TriangleMasks{of_geometry->data(), of_geometry->size(), of_mask}
+                                  : TriangleMasks{};
+  }
 
   // Sets `only`, after changes of the rest.
   void set_only() noexcept {
@@ -117,7 +136,8 @@ struct SceneBatch {
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;
   std::uint32_t mask;
-  PrimitiveView skip;  // of the caller's batch
+  PrimitiveView skip;        // of the caller's batch
+  TraversalChoice of_words;  // for geometries whose triangles have masks
 };
 // Throws as Scene::closest().
 SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options);

@@ -149,6 +149,15 @@ class SceneTracer {
     batch.numbers = numbers, batch.instance = instance;
     return batch;
   }
+  // The hits of a geometry, whose triangles may have masks.
+  void trace(const Geometry& geometry, std::uint32_t number, GeometryBatch& part) const {
+    part.masks = query_.scene.masks_of(number, query_.mask);
+    if (part.masks.see_all()) return geometry.trace(query_, part);
+    GeometryQuery query = query_;
+    query.choice = query_.of_words;
+    query.choice.counters = query_.choice.counters, query.choice.facing = query_.choice.facing;
+    geometry.trace(query, part);
+  }
   // How much memory set_options() takes.
   std::size_t bytes_of_options(std::size_t size) const {
     return (batch_.after != nullptr ? Scratch::bytes_of<Hit>(size) : 0) +
@@ -183,7 +192,7 @@ class SceneTracer {
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
-    geometry.trace(query_, part);
+    trace(geometry, numbers.members[0].geometry, part);
     if (places != nullptr) spread(part.hits, batch_.size, numbers.owners, batch_.hits);
   }
   void trace_only(std::uint32_t number) const {
@@ -269,7 +278,7 @@ class SceneTracer {
     else
       part.occluded = scratch.take<std::uint8_t>(count);
     set_options(part, owners, rays, scratch);
-    geometry.trace(query_, part);
+    trace(geometry, owners.members[0].geometry, part);
     if (batch_.hits != nullptr)
       keep_hits(owners.owners, leaf, part);
     else

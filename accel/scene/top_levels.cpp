@@ -129,7 +129,8 @@ std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<c
 void SceneParts::set_trees() noexcept {
   for (Instance& instance : instances) {
     const Geometry& geometry = *geometries[instance.geometry];
-    const Bvh* const tree = geometry.has_tree() ? geometry.triangles() : nullptr;
+    const bool is_walked = geometry.has_tree() && words_of(instance.geometry) == nullptr;
+    const Bvh* const tree = is_walked ? geometry.triangles() : nullptr;
     instance.tree =
         tree != nullptr && TreeAccess::arrays(*tree) != nullptr ? TreeAccess::ready(*tree) : nullptr;
   }

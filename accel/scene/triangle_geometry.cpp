@@ -16,7 +16,8 @@ namespace {
 
 struct TriangleGeometry : Geometry {
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
-    const TreeView view = TreeAccess::traced(*triangles()).view;
+    TreeView view = TreeAccess::traced(*triangles()).view;
+    view.masks = rays.masks;
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;
@@ -126,6 +127,13 @@ std::unique_ptr<Geometry> triangles_of(Bvh tree) {
   return std::make_unique<TreeGeometry>(std::make_shared<Bvh>(std::move(tree)));
 }
 
+TriangleGeometry& triangles_at(SceneParts& parts, std::uint32_t geometry) {
+  auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", parts.geometries, geometry).get());
+  if (part == nullptr)
+    throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
+  return *part;
+}
+
 std::unique_ptr<Geometry> TreeGeometry::refit(VertexView vertices, IndexView triangles, int threads) {
   if (own == nullptr || is_shared) return triangles_of(tree->refitted(vertices, triangles, threads));
   forget_volume();
@@ -158,12 +166,19 @@ void Scene::replace(std::uint32_t geometry, Bvh tree) {
 void Scene::replace(std::uint32_t geometry, std::shared_ptr<const Bvh> tree) {
   changed().replace(geometry, geometry_of_triangles(std::move(tree)));
 }
+void Scene::set_triangle_masks(std::uint32_t geometry, std::span<const std::uint32_t> masks) {
+  SceneParts& parts = changed();
+  triangles_at(parts, geometry);
+  parts.words.resize(std::max(parts.words.size(), std::size_t{geometry} + 1));
+  std::shared_ptr<const Words> words;
+  if (!masks.empty()) words = std::make_shared<const Words>(masks.begin(), masks.end());
+  parts.words[geometry] = std::move(words);
+  parts.has_changed(geometry);
+}
 void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
-  auto* const part = dynamic_cast<TriangleGeometry*>(at("geometry", changed().geometries, geometry).get());
-  if (part == nullptr)
-    throw std::invalid_argument("scene: geometry " + std::to_string(geometry) + " has no triangles");
-  if (auto other = part->refit(vertices, triangles, threads))
-    return changed().replace(geometry, std::move(other));
+  SceneParts& parts = changed();
+  if (auto other = triangles_at(parts, geometry).refit(vertices, triangles, threads))
+    parts.geometries[geometry] = std::move(other);
   changed().has_changed(geometry);
 }
 const Bvh* Scene::tree(std::uint32_t geometry) const& {

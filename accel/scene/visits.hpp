@@ -28,6 +28,7 @@ struct GeometryBatch {
   std::uint32_t instance = no_part;     // see LeafVisit
   const Hit* after = nullptr;           // not null: the first hits after these are looked for
   const std::uint32_t* skip = nullptr;  // not null: for each ray the primitive that is not there for it
+  TriangleMasks masks = {};             // by rows with a rule
 };
 
 // On this thread. All answers are set.

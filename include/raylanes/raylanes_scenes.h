@@ -62,6 +62,12 @@ RAYLANES_STATUS raylanes_scene_refit(raylanes_scene* scene, uint32_t geometry, c
                                      size_t vertex_count, size_t vertex_stride, const void* triangles,
                                      size_t triangle_count, size_t triangle_stride, int32_t threads);
 
+/// Gives the triangles of a geometry masks: calls with rays see triangle i only if masks[i] and the mask of the call
+/// have a bit in common. Triangles from n on are always there, and n = 0 takes all masks away. The scene copies them. A
+/// refit keeps them, a replacement takes them away, and a scene that has some cannot be saved.
+RAYLANES_STATUS raylanes_scene_set_triangle_masks(raylanes_scene* scene, uint32_t geometry,
+                                                  const uint32_t* masks, size_t n);
+
 /// Places a geometry. The transform, row by row, maps a point (x, y, z) of the geometry to the scene: x' = t[0] x +
 /// t[1] y + t[2] z + t[3], and y' and z' by the next four numbers each; NULL is the identity. An instance with mask 0
 /// is never hit. The usual mask is 0xffffffff.

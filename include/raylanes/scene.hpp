@@ -188,6 +188,14 @@ class Scene : public SurfaceQueries<Scene>, public PointQueries<Scene> {
   /// Refits a geometry of triangles to a moved mesh, as Bvh::refit() does. Throws as that does, and std::out_of_range
   /// if there is no such geometry.
   void refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads = 1);
+  /// Gives the triangles of a geometry masks: a call sees triangle i if masks[i] and the mask of the call have a bit in
+  /// common, besides the instance's mask. Triangles from masks.size() on are always there, and an empty span takes all
+  /// masks away. The scene copies them. They hold for all calls with rays, which take the test exact then, and for no
+  /// calls with points. update() must follow.
+  /// Instances of the geometry are in no common tree, and are traced by themselves in about the time of calls with
+  /// TraceOptions::skip. A refit keeps the masks, replace() takes them away, and no file holds them.
+  /// Throws std::out_of_range if there is no such geometry, and std::invalid_argument if it has no triangles.
+  void set_triangle_masks(std::uint32_t geometry, std::span<const std::uint32_t> masks);
   /// Returns the tree of a geometry, which a mesh that was added without one builds first; null if the geometry is not
   /// one of triangles. Throws as replace() and the constructor of Bvh do.
   /// The pointer is valid until the geometry is replaced or refitted or the scene is destroyed or assigned to.

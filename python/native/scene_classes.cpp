@@ -201,6 +201,7 @@ void bind_scenes(py::module_& module) {
       .def("move", move)
       .def("set_mask", set_mask)
       .def("set_moving", set_moving)
+      .def("set_triangle_masks", set_triangle_masks)
       .def("update", update)
       .def("report", report_of_scene)
       .def("instances", instances_of)

@@ -163,6 +163,14 @@ inline void set_moving(SharedScene& shared, const py::array& instances, bool mov
   });
 }
 
+inline void set_triangle_masks(SharedScene& shared, std::uint32_t geometry, const py::array& masks) {
+  const auto given = records_of<std::uint32_t>(masks);
+  std::vector<std::uint32_t> words(given.count);
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = given[i];
+  change(shared, is_quick(words.size() / 64),
+         [&](Scene& scene) { scene.set_triangle_masks(geometry, words); });
+}
+
 // Whether an update ends so soon, even if it builds a tree over all triangles.
 inline bool is_quick_update(const Scene& scene) {
   constexpr std::size_t most = 1 << 13;  // triangles

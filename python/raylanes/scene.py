@@ -300,6 +300,40 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         instances = unsigned("instance", instance)
         self._tree.set_moving(_flat(instances, instances.shape), flag("moving", moving))
 
+    def set_triangle_masks(self, geometry, masks):
+        """Give the triangles of a geometry masks, which hide them from calls with rays. update() must follow.
+
+        A call sees a triangle if its mask and the mask of the call have a bit in common. The scene copies the masks.
+        refit() keeps them, replace() takes them away. A scene that has some cannot be saved or pickled.
+
+        Parameters
+        ----------
+        geometry : int
+            The index of the geometry.
+        masks : array of int, shape (n,), or None
+            One for each triangle; triangles from n on are always there. None takes all masks away.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        IndexError
+            If there is no such geometry.
+        ValueError
+            If it has no triangles.
+
+        Examples
+        --------
+        >>> scene.set_triangle_masks(0, None)
+        >>> scene.update()
+        """
+        words = unsigned("masks", [] if masks is None else masks)
+        if words.ndim != 1:
+            raise ValueError(f"masks: the shape must be (n,), it is {words.shape}")
+        self._tree.set_triangle_masks(_index("geometry", geometry), np.ascontiguousarray(words))
+
     def update(self, *, threads=0):
         """Make the scene ready for queries after changes, in 0.2 to 0.4 µs for each of hundreds of instances.
 

@@ -268,6 +268,33 @@ void change_some(Bytes& bytes, Coordinates& coordinates, Scene& scene, const Mes
   }
 }
 
+// The triangles of a geometry have masks, and are there for calls that share a bit.
+void expect_triangle_masks(Bytes& bytes, Scene scene, const std::vector<Ray>& rays,
+                           const TraceOptions& options) {
+  if (scene.geometry_count() == 0) return;
+  const auto masked = static_cast<std::uint32_t>(bytes.below(scene.geometry_count()));
+  if (scene.tree(masked) == nullptr) return;
+  std::vector<std::uint32_t> words(bytes.below(20));
+  for (std::uint32_t& word : words) word = any_mask(bytes);
+  scene.set_triangle_masks(masked, words);
+  scene.update();
+  std::vector<SceneHit> expected;
+  for (const Ray& ray : rays)
+    expected.push_back(expected_hit(scene, ray, options.mask, [&](std::uint32_t geometry, const Ray& mapped) {
+      TraceOptions by{.path = &paths().front(), .facing = options.facing, .mask = options.mask};
+      if (geometry == masked) by.masks = words;
+      return scene.tree(geometry)->closest(mapped, by);
+    }));
+  expect_same(scene, rays, expected, options);
+  std::vector<SceneHit> hits(rays.size());
+  scene.closest_crossing(rays, hits, options);
+  const auto lists =
+      scene.all_hits(rays, {.facing = options.facing, .path = options.path, .mask = options.mask});
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!same_bytes(expected[i], lists[i].empty() ? SceneHit() : lists[i][0]))
+      fail("all hits of masked triangles: ray " + std::to_string(i) + " on " + options.path->name);
+}
+
 // As a scene within another one, some times, beside its own parts alone. Then that changes as it may.
 Scene within_another(Bytes& bytes, Coordinates& coordinates, const Scene& scene) {
   Scene outer;
@@ -339,6 +366,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (bytes.chance(64)) expect_closest_crossings(scene, rays, options);
   if (bytes.chance(32)) expect_lists(scene, rays, options);
   if (bytes.chance(16)) expect_stretches(scene, rays, options);
+  if (bytes.chance(48)) expect_triangle_masks(bytes, scene, rays, options);
   if (!rays.empty() && bytes.chance(64)) expect_points(bytes, scene, rays, options);
   if (bytes.chance(64))
     expect_others(bytes, scene, rays, {.mode = options.mode, .path = options.path, .mask = options.mask});

@@ -58,6 +58,7 @@ std::size_t CommonUpdate::triangles_of(std::size_t instance) const {
 bool CommonUpdate::may_be_member(std::size_t i) const {
   const Instance& instance = scene_.instances[i];
   return instance.is_identity && instance.mask != 0 && is_visited(bounds_[i].box) &&
+         scene_.words_of(instance.geometry) == nullptr &&
          scene_.geometries[instance.geometry]->mesh_triangles() > 0;
 }
 

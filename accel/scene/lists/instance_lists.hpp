@@ -121,6 +121,10 @@ class InstanceLists {
   // Appends what a tree has of rays in its space.
   void find_in(const Bvh& tree, const MemberNumbers& numbers, const std::vector<std::uint32_t>& picked,
                std::span<const Ray> rays) {
+    if (const Words* const words = query_.scene.words_of(numbers.members[0].geometry))
+      options_.masks = *words;
+    else
+      options_.masks = {};
     std::vector<SkippedPrimitive> skip;
     if (query_.skip.first != nullptr)
       for (const std::uint32_t i : picked) skip.push_back(skipped_at(query_.skip, i));

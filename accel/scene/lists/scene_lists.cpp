@@ -124,7 +124,11 @@ struct SurfaceDoor<Scene> {
     return [this, judges = std::move(judges), &options](const Ray& ray, const SkippedPrimitive& skipped,
                                                         const SceneHit& hit) mutable {
       auto& judge = judges[hit.geometry];
-      if (!judge) judge.emplace(TreeAccess::traced(*scene.tree(hit.geometry)), options);
+      if (!judge) {
+        TraceOptions of_geometry = options;
+        if (const Words* const words = parts.words_of(hit.geometry)) of_geometry.masks = *words;
+        judge.emplace(TreeAccess::traced(*scene.tree(hit.geometry)), of_geometry);
+      }
       return is_crossing(*judge, parts, ray, hit, skipped, options);
     };
   }

@@ -77,7 +77,15 @@ std::uint32_t Scene::add(const Scene& scene) {
   std::vector<std::shared_ptr<Geometry>> added{std::make_shared<NestedScene>(from)};
   added.insert(added.end(), from.geometries.begin(), from.geometries.end());
   for (const auto& geometry : added) geometry->is_shared = true;
-  return changed().add(added);
+  SceneParts& to = changed();
+  auto words = to.words;
+  if (from.has_words()) {
+    words.resize(to.geometries.size() + 1);
+    words.insert(words.end(), from.words.begin(), from.words.end());
+  }
+  const std::uint32_t number = to.add(added);
+  to.words = std::move(words);
+  return number;
 }
 
 std::vector<InstanceLevel> Scene::levels_of(std::uint32_t instance) const {

@@ -18,15 +18,23 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options) {
         "scene: skip takes hits in scenes, which name an instance besides the primitive");
   if (!options.masks.empty())
     throw std::invalid_argument(
-        "scene: masks are of the triangles of one tree; instances have masks of their own");
+        "scene: masks are of the triangles of one tree; set_triangle_masks() gives them to a geometry");
   if (options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
   if (!scene.is_current)
     throw std::logic_error("scene: it was changed; update() comes before the next query");
-  return {{options.test, traversal.choice, kernels_of(checked_path(options.path))},
-          scene,
-          options.mask,
-          options.skip};
+  SceneQuery query{{options.test, traversal.choice, kernels_of(checked_path(options.path))},
+                   scene,
+                   options.mask,
+                   options.skip,
+                   traversal.choice};
+  if (scene.has_words()) {
+    constexpr std::uint32_t any_word = ~0u;
+    TraceOptions by_words = options;
+    by_words.masks = std::span(&any_word, 1);
+    query.of_words = checked_traversal({TreeKind::bvh, nullptr, no_tree}, by_words).choice;
+  }
+  return query;
 }
 
 namespace {

@@ -114,6 +114,28 @@ static void test_places(void) {
   raylanes_scene_destroy(NULL);
 }
 
+static void test_triangle_masks(void) {
+  static const uint32_t masks[4] = {2, 2, 6, 2};
+  raylanes_scene* scene = scene_of_tetrahedron();
+  raylanes_ray_options options = ray_options();
+  uint32_t part, instance;
+  GOOD(raylanes_scene_set_triangle_masks(scene, 0, masks, 4));
+  GOOD(raylanes_scene_update(scene, 1));
+  expect_hit(scene, NULL, 8.5f, 0, 0);
+  options.mask = 1;
+  expect_hit(scene, &options, INFINITY, RAYLANES_NO_PART, RAYLANES_NO_PART);
+  GOOD(raylanes_scene_set_triangle_masks(scene, 0, NULL, 0));
+  GOOD(raylanes_scene_update(scene, 1));
+  expect_hit(scene, &options, 8.5f, 0, 0);
+  REFUSED(raylanes_scene_set_triangle_masks(scene, 1, masks, 4), "there is no geometry 1");
+  REFUSED(raylanes_scene_set_triangle_masks(scene, 0, NULL, 4), "masks: ");
+  REFUSED(raylanes_scene_set_triangle_masks(NULL, 0, masks, 4), "scene: ");
+  GOOD(raylanes_scene_add_spheres(scene, corners, 0, 0, NULL, &part));
+  GOOD(raylanes_scene_place(scene, part, NULL, 1, &instance));
+  REFUSED(raylanes_scene_set_triangle_masks(scene, part, masks, 4), "no triangles");
+  raylanes_scene_destroy(scene);
+}
+
 // The tetrahedron twice in a scene, which is placed by two more.
 static void test_scenes_within(void) {
   raylanes_scene *part = scene_of_tetrahedron(), *whole = NULL;
@@ -349,6 +371,7 @@ void test_scenes(void) {
   test_meshes();
   test_places();
   test_scenes_within();
+  test_triangle_masks();
   test_other_primitives();
   test_parts();
 }

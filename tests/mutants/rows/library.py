@@ -136,6 +136,8 @@ MUTANTS = [
     *rows_of('accel/scene/nested/nested_scene.cpp', 'test_scenes',
         ('scene: parts of scenes are seen by any mask', 'placed.mask & nested.mask', 'nested.mask'),
         ('scene: parts of scenes belong to the outermost level', 'number + 1 + nested.placer', 'number'),
+        ('scene: masks of triangles stay behind',
+         'words.insert(words.end(), from.words.begin(), from.words.end());', ''),
         ('scene: geometries of scenes are refitted in place', 'geometry->is_shared = true;', '(void)geometry;')),
     *rows_of('accel/scene/scene_trace.cpp', 'test_scenes',
         ('scene: short lists skip nothing', ' && !skips();', ';'),

@@ -278,3 +278,27 @@ def test_files(tmp_path):
         raylanes.Bvh.load(tmp_path / "scene")
     scene.place(0, moved_by(50))
     assert pickle.loads(pickle.dumps(scene)).closest(rays).hit.any()  # ready, as after update()
+
+
+def test_masks_of_triangles_hide_them_from_rays():
+    scene = scene_of_cubes()
+    whole = scene.closest(rays)
+    masks = np.arange(12) % 3 == 0
+    scene.set_triangle_masks(0, np.where(masks, 0b10, 0b01))
+    scene.update()
+    hidden = scene.closest(rays, mask=0b01)
+    assert scene.closest(rays).tobytes() == whole.tobytes() and not masks[hidden.primitive[hidden.hit]].any()
+    seen = ~masks[np.where(whole.hit, whole.primitive, 1)]
+    assert hidden[seen].tobytes() == whole[seen].tobytes() and (hidden != whole).any()
+    assert scene.all_hits(rays, mask=0b01, max_count=1).items.tobytes() == hidden[hidden.hit].tobytes()
+    for wrong, text in ((np.ones((2, 2), int), r"^masks: the shape must be \(n,\), it is \(2, 2\)$"),
+                        ([2**32], "^masks: 4294967296 is out of range")):
+        with pytest.raises(ValueError, match=text):
+            scene.set_triangle_masks(0, wrong)
+    with pytest.raises(IndexError, match="there is no geometry 1"):
+        scene.set_triangle_masks(1, [1])
+    with pytest.raises(ValueError, match="geometry 0 has masks of triangles"):
+        pickle.dumps(scene)
+    scene.set_triangle_masks(0, None)
+    scene.update()
+    assert scene.closest(rays, mask=0b01).tobytes() == whole.tobytes()

@@ -345,6 +345,13 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     };
     calls["Scene::update"] = [&] { solid.update(); };
     calls["Scene::set_mask"] = [&] { solid.set_mask(0, solid.mask_of(0)); };
+    calls["Scene::set_triangle_masks"] = [&] {
+      const std::vector<std::uint32_t> masks(3, 1);
+      Scene other = solid;
+      other.set_triangle_masks(0, masks), other.update(threads);
+      std::vector<SceneHit> hits(of_scene.rays.size());
+      other.closest(of_scene.rays, hits, {.path = path, .threads = threads});
+    };
     calls["Scene::set_moving"] = [&] { solid.set_moving(1, true), solid.update(threads); };
     calls["Scene::report"] = [&] { solid.report(); };
     calls["Scene::tree"] = [&] { solid.tree(0); };

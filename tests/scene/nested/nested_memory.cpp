@@ -33,6 +33,8 @@ TEST(NestedSceneMemory, that_runs_out_leaves_the_scene_as_it_was) {
   EXPECT_GT(scene.report().common_instances, 1u);
   expect_strong("add", scene, [&](Scene& changed) { changed.add(part); });
   expect_strong("place", scene, [](Scene& changed) { changed.place(0); });
+  const std::vector<std::uint32_t> masks(12, 0b0010);
+  expect_strong("set_triangle_masks", scene, [&](Scene& changed) { changed.set_triangle_masks(1, masks); });
   expect_strong("set_mask", scene, [](Scene& changed) { changed.set_mask(0, 0b0010); });
 }
 
