@@ -13,6 +13,8 @@
 
 namespace raylanes {
 
+class SceneD;
+
 // Which kernels walk a tree.
 enum class TreeKind { bvh, kdtree };
 
@@ -25,6 +27,7 @@ struct TracedTree {
 struct BvhArrays;
 struct BvhDArrays;
 struct SceneParts;
+struct SceneDParts;
 struct SphereTreeArrays;
 
 // The inside of trees.
@@ -34,6 +37,7 @@ struct TreeAccess {
   static const BvhDArrays* arrays(const BvhD& bvh) { return bvh.tree_.get(); }
   static const SphereTreeArrays* arrays(const SphereTree& spheres) { return spheres.tree_.get(); }
   static const SceneParts& parts(const Scene& scene) { return scene.parts(); }
+  static const SceneDParts& parts(const SceneD& scene);
   // The tree that calls with one ray walk, until a refit; null: of an empty mesh.
   static const TreeView* ready(const TriangleTree& tree) { return tree.ready_; }
   static Bvh copy(const Bvh& bvh);

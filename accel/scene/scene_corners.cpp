@@ -1,10 +1,11 @@
-// The corners and the normals of hits in scenes.
+// The corners and the normals of hits in scenes, of floats and of doubles.
 
 #include <raylanes/surface.hpp>
 
 #include "../batch/checked_call.hpp"
 #include "../batch/in_parallel.hpp"
 #include "../queries/traced_tree.hpp"
+#include "doubles/scene_d_parts.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -37,10 +38,43 @@ class NamedTriangles {
   std::vector<std::uint64_t> places_;
 };
 
-// The triangles of the geometries that are hit.
-class HitTriangles {
+// The triangles of a geometry of doubles.
+class NamedTrianglesD {
  public:
-  HitTriangles(const SceneParts& scene, const PrimitiveView& hits)
+  explicit NamedTrianglesD(const GeometryD& geometry) {
+    if (const BvhDArrays* const tree = TreeAccess::arrays(*geometry.tree)) corners_ = triangles_of(*tree);
+  }
+  bool find(std::uint32_t primitive, TriangleD& triangle) const {
+    if (primitive >= corners_.size()) return false;
+    std::ranges::copy(corners_[primitive].vertex, triangle.corner);
+    return !has_equal_corners(triangle.corner[0], triangle.corner[1], triangle.corner[2]);
+  }
+
+ private:
+  std::vector<CornersOf<double>> corners_;
+};
+
+// The types of scenes, by their parts.
+template <class Parts>
+struct TypesOfParts {
+  using Named = NamedTriangles;
+  using AnyTriangle = Triangle;
+  using AnyInstance = Instance;
+};
+template <>
+struct TypesOfParts<SceneDParts> {
+  using Named = NamedTrianglesD;
+  using AnyTriangle = TriangleD;
+  using AnyInstance = InstanceD;
+};
+
+// The triangles of the geometries that are hit.
+template <class Parts>
+class HitTriangles {
+  using Types = TypesOfParts<Parts>;
+
+ public:
+  HitTriangles(const Parts& scene, const PrimitiveView& hits)
       : scene_(scene), of_geometry_(scene.geometries.size()) {
     for (std::size_t i = 0; i < hits.count; ++i) {
       const std::uint32_t instance = hits.instance(i);
@@ -50,20 +84,21 @@ class HitTriangles {
     }
   }
   // The instance and the triangle of a hit; null if it names none.
-  const Instance* find(std::uint32_t instance, std::uint32_t primitive, Triangle& triangle) const {
+  const typename Types::AnyInstance* find(std::uint32_t instance, std::uint32_t primitive,
+                                          typename Types::AnyTriangle& triangle) const {
     if (instance >= scene_.instances.size()) return nullptr;
-    const Instance& hit = scene_.instances[instance];
+    const auto& hit = scene_.instances[instance];
     return of_geometry_[hit.geometry]->find(primitive, triangle) ? &hit : nullptr;
   }
 
  private:
-  const SceneParts& scene_;
-  std::vector<std::optional<NamedTriangles>> of_geometry_;
+  const Parts& scene_;
+  std::vector<std::optional<typename Types::Named>> of_geometry_;
 };
 
 // write(result, instance or null, triangle) for each hit.
-template <class Result, class Write>
-void each_hit(const char* call, const char* what, const SceneParts& scene, PrimitiveView hits,
+template <class Parts, class Result, class Write>
+void each_hit(const char* call, const char* what, const Parts& scene, PrimitiveView hits,
               std::span<Result> results, int threads, const Write& write) {
   const QuietFloats quiet;
   require_size(call, what, results.size(), "hits", hits.count);
@@ -77,31 +112,58 @@ void each_hit(const char* call, const char* what, const SceneParts& scene, Primi
   in_parallel(hits.count, grain_of(hits.count, threads, 4, 1024), threads,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
-                  Triangle triangle;
-                  const Instance* const instance = triangles.find(hits.instance(i), hits[i], triangle);
+                  typename TypesOfParts<Parts>::AnyTriangle triangle;
+                  const auto* const instance = triangles.find(hits.instance(i), hits[i], triangle);
                   write(results[i], instance, triangle);
                 }
               });
 }
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+Float3 corner_in_scene(const Instance& instance, const Float3& corner) {
+  return in_scene_as_floats(instance, corner);
+}
+Double3 corner_in_scene(const InstanceD& instance, const Double3& corner) {
+  return in_scene(instance, corner);
+}
+
+template <class Point>
+constexpr Point no_point{std::numeric_limits<typename Point::value_type>::quiet_NaN(),
+                         std::numeric_limits<typename Point::value_type>::quiet_NaN(),
+                         std::numeric_limits<typename Point::value_type>::quiet_NaN()};
+
+// NaN for hits of no triangle.
+template <class Parts, class Point>
+void write_normals(const Parts& scene, const PrimitiveView& hits, std::span<Point> normals, int threads) {
+  each_hit("normals", "normals", scene, hits, normals, threads,
+           [](Point& normal, const auto* instance, const auto& triangle) {
+             normal = instance != nullptr ? normal_in_scene(instance->transform, unit_normal(triangle))
+                                          : no_point<Point>;
+           });
+}
+template <class Parts, class AnyTriangle>
+void write_corners(const Parts& scene, const PrimitiveView& hits, std::span<AnyTriangle> triangles,
+                   int threads) {
+  each_hit("corners", "triangles", scene, hits, triangles, threads,
+           [](AnyTriangle& to, const auto* instance, const AnyTriangle& triangle) {
+             for (std::size_t k = 0; k < 3; ++k)
+               to.corner[k] = instance != nullptr ? corner_in_scene(*instance, triangle.corner[k])
+                                                  : no_point<PointOf<typename Parts::Number>>;
+           });
+}
 
 }  // namespace
 
 void Scene::normals(PrimitiveView hits, std::span<Float3> normals, int threads) const {
-  each_hit("normals", "normals", parts(), hits, normals, threads,
-           [](Float3& normal, const Instance* instance, const Triangle& triangle) {
-             normal = instance != nullptr ? normal_in_scene(instance->transform, unit_normal(triangle))
-                                          : Float3{nan, nan, nan};
-           });
+  write_normals(parts(), hits, normals, threads);
 }
 void Scene::corners(PrimitiveView hits, std::span<Triangle> triangles, int threads) const {
-  each_hit("corners", "triangles", parts(), hits, triangles, threads,
-           [](Triangle& to, const Instance* instance, const Triangle& triangle) {
-             for (std::size_t k = 0; k < 3; ++k)
-               to.corner[k] = instance == nullptr ? Float3{nan, nan, nan}
-                                                  : in_scene_as_floats(*instance, triangle.corner[k]);
-           });
+  write_corners(parts(), hits, triangles, threads);
+}
+void SceneD::normals(PrimitiveView hits, std::span<Double3> normals, int threads) const {
+  write_normals(parts(), hits, normals, threads);
+}
+void SceneD::corners(PrimitiveView hits, std::span<TriangleD> triangles, int threads) const {
+  write_corners(parts(), hits, triangles, threads);
 }
 
 }  // namespace raylanes

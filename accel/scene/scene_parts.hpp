@@ -34,6 +34,10 @@ auto& at(const char* what, List& list, std::uint32_t number) {
                             ", it has " + std::to_string(list.size()));
   return list[number];
 }
+// Throws std::logic_error if a scene was changed and not updated.
+inline void require_current(bool is_current) {
+  if (!is_current) throw std::logic_error("scene: it was changed; update() comes before the next query");
+}
 // The number of the first element of so many that are added.
 template <class List>
 std::uint32_t next_number(const char* what, const List& list, std::size_t count = 1) {
@@ -43,7 +47,8 @@ std::uint32_t next_number(const char* what, const List& list, std::size_t count 
 }
 
 // Whether a hit comes before another one of another instance. A miss comes before nothing.
-inline bool is_before(const SceneHit& hit, const SceneHit& other) {
+template <class AnyHit>
+bool is_before(const AnyHit& hit, const AnyHit& other) {
   return hit.t < other.t || (hit.t == other.t && hit.instance < other.instance);
 }
 
@@ -58,6 +63,7 @@ std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
 using Words = std::vector<std::uint32_t>;
 
 struct SceneParts {
+  using Number = float;
   std::vector<std::shared_ptr<Geometry>> geometries;
   std::vector<std::shared_ptr<const Words>>
       words;  // of the first geometries; null: all their triangles are there

@@ -1,4 +1,6 @@
 // The volumes that geometries of triangles enclose.
+#include "volume.hpp"
+
 #include "../mesh/bounding_boxes.hpp"
 #include "geometry.hpp"
 
@@ -20,7 +22,8 @@ class Sum {
 };
 
 // Six times the signed volume between a triangle and a point; exactly 0 if two corners are equal.
-double six_volumes(const float* corners, const double (&from)[3]) {
+template <class T>
+double six_volumes(const T* corners, const double (&from)[3]) {
   double a[3], b[3], c[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const double origin = double{corners[k]};
@@ -32,17 +35,23 @@ double six_volumes(const float* corners, const double (&from)[3]) {
 
 }  // namespace
 
+template <class T>
+double volume_of(std::span<const T> corners, const BoxOf<T>& box) {
+  double middle[3];
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * double{box.lo[k]} + 0.5 * double{box.hi[k]};
+  Sum sum;
+  for (std::size_t at = 0; at < corners.size(); at += 9) sum.add(six_volumes(corners.data() + at, middle));
+  return std::abs(sum.get()) / 6.0;
+}
+template double volume_of(std::span<const float> corners, const Box& box);
+template double volume_of(std::span<const double> corners, const BoxD& box);
+
 double Geometry::volume() const {
   const double known = volume_;
   if (known >= 0.0) return known;
   std::vector<float> corners(9 * mesh_triangles());
   put_corners(corners.data());
-  const Box box = bounds();
-  double middle[3];
-  for (std::size_t k = 0; k < 3; ++k) middle[k] = 0.5 * double{box.lo[k]} + 0.5 * double{box.hi[k]};
-  Sum sum;
-  for (std::size_t at = 0; at < corners.size(); at += 9) sum.add(six_volumes(corners.data() + at, middle));
-  const double volume = std::abs(sum.get()) / 6.0;
+  const double volume = volume_of<float>(corners, bounds());
   volume_ = volume;
   return volume;
 }

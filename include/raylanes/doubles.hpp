@@ -38,7 +38,7 @@ struct TraceOptionsD {
   LaneBits active = nullptr;    ///< the active rays of a batch; null: all
   PrimitiveView skip =
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
-  std::uint32_t mask = ~0u;                   ///< for `masks`
+  std::uint32_t mask = ~0u;                   ///< of instances of a scene, or for `masks`, as in TraceOptions
   std::span<const std::uint32_t> masks = {};  ///< of triangles, as in TraceOptions
   /// For closest(): returns for ray i the first hit after `after[i]`, in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.
@@ -54,6 +54,7 @@ struct ClosestPointOptionsD {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;           ///< the active points of a batch; null: all
+  std::uint32_t mask = ~0u;            ///< of instances of a scene, as in TraceOptions
   const Progress* progress = nullptr;  ///< as in ClosestPointOptions
 };
 
@@ -64,6 +65,7 @@ struct SignedDistanceOptionsD {
   const Path* path = nullptr;  ///< an ISA path that this machine supports; null: the active one
   int threads = 1;  ///< 1: the calling thread; n: up to n, at most one a core; 0: the caller's oneTBB arena
   LaneBits active = nullptr;           ///< the active points; null: all
+  std::uint32_t mask = ~0u;            ///< of instances of a scene, as in TraceOptions
   const Progress* progress = nullptr;  ///< as in SignedDistanceOptions
 };
 

@@ -12,9 +12,9 @@
 
 namespace raylanes {
 
-/// The queries of points of Bvh, KdTree, BvhD and Scene. Points, results and views have the numbers of the class:
-/// doubles for BvhD, else floats. Views, active elements, threads, paths and exceptions are as in RayQueries; after
-/// std::bad_alloc the object is unchanged.
+/// The queries of points of Bvh, KdTree, BvhD, Scene and SceneD. Points, results and views have the numbers of the
+/// class: doubles for BvhD and SceneD, else floats. Views, active elements, threads, paths and exceptions are as in
+/// RayQueries; after std::bad_alloc the object is unchanged.
 /// A scene answers of the instances that options.mask sees and that can be hit, as Scene says. All calls then throw
 /// std::invalid_argument if one of these has spheres or primitives of your own, and std::logic_error if the scene was
 /// changed without update().
@@ -27,8 +27,8 @@ class PointQueries {
 
  public:
   /// Returns the closest point of the triangles; ties in distance go to the lowest primitive index, in scenes to the
-  /// lowest instance first. ClosestPoint, ClosestPointD and SceneClosestPoint have the error bounds. The bytes do not
-  /// depend on ISA path, tree, builder or threads.
+  /// lowest instance first. ClosestPoint, ClosestPointD, SceneClosestPoint and SceneClosestPointD have the error
+  /// bounds. The bytes do not depend on ISA path, tree, builder or threads.
   /// Triangles with two equal corners are ignored. If the point is not finite, there is no closest point.
   /// Throws std::invalid_argument if the thread count is negative, the path is not supported here, or counters are
   /// asked for in a build without them.

@@ -12,11 +12,11 @@
 
 namespace raylanes {
 
-/// The nearest hits of rays, and whether there is one: the queries of Bvh, KdTree, BvhD, SphereTree and Scene.
-/// Rays, points and views have the numbers of the class: doubles for BvhD, else floats. Hits are Hit, HitD, or SceneHit
-/// in scenes. Options are TraceOptions, for BvhD TraceOptionsD, for SphereTree VisitOptions.
-/// Many threads may query one object at the same time. No call traps floating-point exceptions, even if the caller lets
-/// them trap; calls may leave status flags raised: docs/guide/arrays.md.
+/// The nearest hits of rays, and whether there is one: the queries of Bvh, KdTree, BvhD, SphereTree, Scene and SceneD.
+/// Rays, points and views have the numbers of the class: doubles for BvhD and SceneD, else floats. Hits are Hit, HitD,
+/// or in scenes SceneHit and SceneHitD. Options are TraceOptions, for doubles TraceOptionsD, for SphereTree
+/// VisitOptions. Many threads may query one object at the same time. No call traps floating-point exceptions, even if
+/// the caller lets them trap; calls may leave status flags raised: docs/guide/arrays.md.
 template <class Tree>
 class RayQueries {
  public:
@@ -159,9 +159,9 @@ class RayQueries {
                         const Options& options) const;
 };
 
-/// The surfaces that rays meet: where they pass through, each hit, each crossing. The queries of Bvh, KdTree, BvhD and
-/// Scene, by TriangleTest::exact. docs/crossings.md has the definitions. Views, active elements, threads, paths and
-/// exceptions are as in RayQueries; after std::bad_alloc the object is unchanged.
+/// The surfaces that rays meet: where they pass through, each hit, each crossing. The queries of Bvh, KdTree, BvhD,
+/// Scene and SceneD, by TriangleTest::exact. docs/crossings.md has the definitions. Views, active elements, threads,
+/// paths and exceptions are as in RayQueries; after std::bad_alloc the object is unchanged.
 template <class Tree>
 class SurfaceQueries : public RayQueries<Tree> {
   using Base = RayQueries<Tree>;

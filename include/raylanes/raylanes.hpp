@@ -23,6 +23,7 @@
 #include <raylanes/root_methods.hpp>
 #include <raylanes/roots.hpp>
 #include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 #include <raylanes/sphere_tree.hpp>
 #include <raylanes/spheres.hpp>
 #include <raylanes/stretches.hpp>

@@ -147,9 +147,9 @@ class Scene : public SurfaceQueries<Scene>, public PointQueries<Scene> {
   std::uint32_t add(const Mesh& mesh, const BuildOptions& options = {}) {
     return add(mesh.vertices, mesh.triangles, options);
   }
-  /// Does not compile: scenes have floats, as Bvh has.
+  /// Does not compile: scenes have floats, as Bvh has; SceneD has doubles.
   template <detail::TreeOfDoubles Tree>
-  std::uint32_t add(const Tree&) = delete;  // of doubles; a scene has floats: add a Bvh
+  std::uint32_t add(const Tree&) = delete;  // of doubles: add a Bvh, or take a SceneD
   /// Adds spheres; returns the index of the geometry.
   std::uint32_t add(SphereTree spheres);
   /// Adds a tree that the scene shares with its other owners; nobody may change it until the scene no longer has it.

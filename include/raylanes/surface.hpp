@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 #include <raylanes/types.hpp>
 
 namespace raylanes {
@@ -44,7 +44,8 @@ Point point_at(const AnyRay& ray, double t) {
 // Turns the normals of an instance: the cofactors of its transform, of the sign of its determinant.
 class NormalMatrix {
  public:
-  explicit NormalMatrix(const Transform& transform) {
+  template <class AnyTransform>
+  explicit NormalMatrix(const AnyTransform& transform) {
     double row[3][3], determinant = 0;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) row[i][j] = static_cast<double>(transform.row[i][j]);
@@ -58,13 +59,14 @@ class NormalMatrix {
     }
     side_ = determinant / std::abs(determinant);
   }
-  Float3 operator()(const Float3& normal) const {
+  template <class Point>
+  Point operator()(const Point& normal) const {
     double turned[3] = {};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) turned[i] += cofactor_[i][j] * static_cast<double>(normal[j]);
       turned[i] *= side_;
     }
-    return unit_of<Float3>(turned);
+    return unit_of<Point>(turned);
   }
 
  private:
@@ -92,6 +94,11 @@ inline Double3 position(const RayD& ray, double t) {
 /// Returns the unit normal in the scene of a normal in the space of an instance. It points out of a solid if the normal
 /// does, also where the transform mirrors the solid. NaN if the transform is singular.
 inline Float3 normal_in_scene(const Transform& transform, const Float3& normal) {
+  return detail::NormalMatrix(transform)(normal);
+}
+/// Returns the unit normal in a scene of doubles of a normal in the space of an instance; NaN also if a product of four
+/// numbers of the transform overflows.
+inline Double3 normal_in_scene(const TransformD& transform, const Double3& normal) {
   return detail::NormalMatrix(transform)(normal);
 }
 

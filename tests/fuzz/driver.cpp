@@ -26,10 +26,17 @@ constexpr struct {
   std::string_view name;
   Target run;
   std::uint64_t floor;  // runs of each seed where the level is quick; twice that by default, 40 times by all
-} targets[] = {{"trace", fuzz_trace, 100},   {"queries", fuzz_queries, 25},  {"arrays", fuzz_arrays, 1000},
-               {"roots", fuzz_roots, 1000},  {"readers", fuzz_readers, 250}, {"trees", fuzz_trees, 50},
-               {"scenes", fuzz_scenes, 100}, {"doubles", fuzz_doubles, 10},  {"c_calls", fuzz_c_calls, 250},
-               {"embree", fuzz_embree, 50}};
+} targets[] = {{"trace", fuzz_trace, 100},
+               {"queries", fuzz_queries, 25},
+               {"arrays", fuzz_arrays, 1000},
+               {"roots", fuzz_roots, 1000},
+               {"readers", fuzz_readers, 250},
+               {"trees", fuzz_trees, 50},
+               {"scenes", fuzz_scenes, 100},
+               {"doubles", fuzz_doubles, 10},
+               {"c_calls", fuzz_c_calls, 250},
+               {"embree", fuzz_embree, 50},
+               {"scenes_of_doubles", fuzz_scenes_of_doubles, 50}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 

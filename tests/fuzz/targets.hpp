@@ -13,6 +13,8 @@ int fuzz_queries(const std::uint8_t* data, std::size_t size);
 int fuzz_doubles(const std::uint8_t* data, std::size_t size);
 // Scenes of parts in any places.
 int fuzz_scenes(const std::uint8_t* data, std::size_t size);
+// Scenes of doubles in any places.
+int fuzz_scenes_of_doubles(const std::uint8_t* data, std::size_t size);
 // Triangles, boxes and spheres: a ray against many, many rays against one.
 int fuzz_arrays(const std::uint8_t* data, std::size_t size);
 // Roots and reciprocals of floats and doubles.

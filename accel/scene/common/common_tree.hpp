@@ -28,8 +28,10 @@ struct MemberNumbers {
   }
   // The number of a primitive; no_primitive if no member has it.
   std::uint32_t of(std::uint32_t instance, std::uint32_t primitive) const;
-  // The hit after which those hits come that are after `hit`, in the order of t, instance, primitive.
-  Hit after(const SceneHit& hit) const;
+  // The hit after which those hits come that are after `hit`, a SceneHit or SceneHitD, in the order of t, instance,
+  // primitive.
+  template <class AnyHit>
+  HitOf<decltype(AnyHit::t)> after(const AnyHit& hit) const;
 };
 // The numbers of an instance alone in its tree.
 struct OneMember {
@@ -40,23 +42,32 @@ struct OneMember {
   MemberNumbers numbers() const { return {members, {members, 32}}; }
 };
 
-struct CommonTree {
+// Members, and which of them the triangles of a common tree belong to.
+struct MemberTable {
+  std::vector<Member> members;  // as in MemberNumbers
+  std::vector<TriangleOwner> slots;
+  unsigned shift = 31;        // above all numbers of an only member
+  std::size_t triangles = 0;  // of all members
+
+  MemberTable() = default;
+  // Numbers the triangles of members, of which each has some.
+  explicit MemberTable(std::vector<Member> unnumbered);
+  MemberNumbers numbers() const { return {members, {slots.data(), shift}}; }
+};
+
+struct CommonTree : MemberTable {
   std::shared_ptr<const Geometry> geometry;  // has the triangles of all members
   std::shared_ptr<Bvh> own;                  // its tree; null: that of the only member, which serves as it is
   const TreeView* view = nullptr;            // of the tree
-  std::vector<Member> members;               // as in MemberNumbers
-  std::vector<TriangleOwner> slots;
-  BoundedTreeArrays boxes;                // over the boxes of members
-  unsigned shift = 31;                    // above all numbers of an only member
-  std::uint32_t mask = ~0u;               // of each member that is left
-  std::size_t triangles = 0, struck = 0;  // of all members; of those that have left
+  BoundedTreeArrays boxes;                   // over the boxes of members
+  std::uint32_t mask = ~0u;                  // of each member that is left
+  std::size_t struck = 0;                    // triangles of members that have left
   // Whether a copy of the scene has it, too. Then nothing changes it.
   std::atomic<bool> is_shared{false};
 
   CommonTree() = default;
   CommonTree(const CommonTree& other);  // with a tree of its own, if the other one has one
 
-  MemberNumbers numbers() const { return {members, {slots.data(), shift}}; }
   bool has(std::uint32_t instance) const {
     const Member& member = numbers().from(instance);
     return member.instance == instance && !member.is_struck;

@@ -14,13 +14,6 @@ namespace {
 // Each ray goes through all trees that its mask sees, from their roots.
 constexpr std::size_t max_groups = 4;
 
-// The numbers of a slot, as a power of two: members begin at multiples of it. Unused numbers are a sixteenth of all on
-// average, an eighth at most.
-unsigned shift_of_slots(std::size_t triangles, std::size_t members) {
-  const std::size_t most = triangles / (8 * members);
-  return most < 2 ? 0 : std::min(16u, static_cast<unsigned>(std::bit_width(most)) - 1);
-}
-
 // Builds as the largest of the meshes is built.
 Bvh united(const SceneParts& scene, std::span<const Member> members, int threads) {
   const auto geometry_of = [&](const Member& member) -> const Geometry& {
@@ -151,20 +144,14 @@ void CommonUpdate::set_tree(CommonGroup& group, const std::vector<std::uint32_t>
   group.tree = nullptr;
   if (chosen.empty()) return;
   auto tree = std::make_shared<CommonTree>();
-  for (const std::uint32_t i : chosen) tree->triangles += triangles_of(i);
-  if (chosen.size() > 1) tree->shift = shift_of_slots(tree->triangles, chosen.size());
-  std::uint32_t first = 0;
+  std::vector<Member> members;
   std::vector<Box> boxes;
   for (const std::uint32_t i : chosen) {
     is_member_[i] = 1, boxes.push_back(bounds_[i].box);
-    const TriangleOwner owner{first, scene_.instances[i].geometry, i};
-    const auto triangles = static_cast<std::uint32_t>(triangles_of(i));
-    tree->members.push_back({owner, bounds_[i].box, triangles});
-    const std::uint32_t slots = ((triangles - 1) >> tree->shift) + 1;
-    tree->slots.insert(tree->slots.end(), slots, owner);
-    first += slots << tree->shift;
+    members.push_back(
+        {{0, scene_.instances[i].geometry, i}, bounds_[i].box, static_cast<std::uint32_t>(triangles_of(i))});
   }
-  tree->members.push_back({{first, no_part, no_part}});
+  static_cast<MemberTable&>(*tree) = MemberTable(std::move(members));
   tree->boxes = build_box_tree("scene", boxes, {});
   tree->mask = group.mask;
   const std::shared_ptr<Geometry>& alone = scene_.geometries[tree->members[0].geometry];

@@ -4,68 +4,18 @@
 #include <numeric>
 
 #include "../../batch/scratch.hpp"
-#include "../../queries/ray_lists.hpp"
 #include "../../queries/traced_tree.hpp"
 #include "../scene_parts.hpp"
+#include "lists_in_trees.hpp"
 
 namespace raylanes {
-
-template <class Item>
-inline constexpr bool is_hit = std::is_same_v<Item, Hit>;
-template <class Item>
-using SceneItem = std::conditional_t<is_hit<Item>, SceneHit, SceneCrossing>;
-
-// A hit or a crossing in a tree, as one in the scene.
-template <class Item>
-SceneItem<Item> in_scene(Item item, const TriangleOwners& owners) {
-  if constexpr (is_hit<Item>) {
-    return owners.spread(item);
-  } else {
-    const TriangleOwner& owner = owners.of(item.primitive);
-    item.primitive -= owner.first;
-    return {item, owner.geometry, owner.instance};
-  }
-}
-// The same as an entry of all rays' lists.
-template <class Item>
-struct FoundItem : SceneItem<Item> {
-  std::size_t ray;
-};
-
-// The lists of rays in one tree, where numbers say which instances own its triangles. rays.skip names instances.
-template <class Item>
-RayLists<Item> lists_in_tree(const Bvh& tree, const MemberNumbers& numbers, RaySource rays,
-                             ListOptions options) {
-  std::vector<std::uint32_t> skip;
-  if (rays.skip.first != nullptr) {
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      skip.push_back(rays.takes_part(i) ? numbers.of(rays.skip.instance(i), rays.skip[i]) : no_primitive);
-    rays.skip = skip;
-  }
-  options.skip = rays.skip;
-  if constexpr (is_hit<Item>)
-    return hits_of<float>(TreeAccess::traced(tree), rays, options);
-  else
-    return crossings_of<float>(TreeAccess::traced(tree), rays, options);
-}
-// The lists of rays in a common tree, as lists in the scene.
-template <class Item>
-RayLists<SceneItem<Item>> lists_in_common(const CommonTree& tree, const RaySource& rays,
-                                          const ListOptions& options) {
-  const MemberNumbers numbers = tree.numbers();
-  RayLists<Item> found = lists_in_tree<Item>(*tree.geometry->triangles(), numbers, rays, options);
-  RayLists<SceneItem<Item>> lists{std::move(found.offsets), {}};
-  lists.items.reserve(found.items.size());
-  for (const Item& item : found.items) lists.items.push_back(in_scene(item, numbers.owners));
-  return lists;
-}
 
 // Lists of a scene that has several trees.
 template <class Item>
 class InstanceLists {
  public:
   // Rays of no direction are inactive. options.max_count is of each tree.
-  InstanceLists(const SceneQuery& query, std::span<const Ray> rays, const ListOptions& options)
+  InstanceLists(const SceneQuery& query, const std::vector<Ray>& rays, const ListOptions& options)
       : query_(query), rays_(rays), options_(options) {
     options_.active = nullptr, options_.progress = nullptr;
   }
@@ -120,22 +70,16 @@ class InstanceLists {
   }
   // Appends what a tree has of rays in its space.
   void find_in(const Bvh& tree, const MemberNumbers& numbers, const std::vector<std::uint32_t>& picked,
-               std::span<const Ray> rays) {
+               const std::vector<Ray>& rays) {
     if (const Words* const words = query_.scene.words_of(numbers.members[0].geometry))
       options_.masks = *words;
     else
       options_.masks = {};
-    std::vector<SkippedPrimitive> skip;
-    if (query_.skip.first != nullptr)
-      for (const std::uint32_t i : picked) skip.push_back(skipped_at(query_.skip, i));
-    const RayLists<Item> lists =
-        lists_in_tree<Item>(tree, numbers, {.records = RayView(rays), .skip = skip}, options_);
-    for (std::size_t k = 0; k < rays.size(); ++k)
-      for (const Item& item : lists[k]) found_.push_back({in_scene(item, numbers.owners), picked[k]});
+    append_lists<Item>(found_, TreeAccess::traced(tree), numbers, picked, rays, query_.skip, options_);
   }
 
   const SceneQuery& query_;
-  std::span<const Ray> rays_;
+  const std::vector<Ray>& rays_;
   ListOptions options_;
   const BoundedTreeArrays* top_ = nullptr;  // that is visited, with rays from `first_` on
   std::size_t first_ = 0;

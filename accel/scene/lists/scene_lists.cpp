@@ -1,6 +1,4 @@
 // Surfaces in scenes: how SurfaceQueries<Scene> answers.
-#include <tuple>
-
 #include "../../queries/answers/surface_answers.hpp"
 #include "instance_lists.hpp"
 
@@ -24,23 +22,12 @@ struct SceneListCall {
         common(quick_tree(scene, options.mask)) {}
 };
 
-// Items in the order of rays, t, instances and primitives, as lists of at most max_count.
-template <class Found, class Item>
-void set_lists(std::vector<Found> found, std::size_t rays, std::size_t max_count, RayLists<Item>& lists) {
-  std::ranges::sort(found, {},
-                    [](const Found& f) { return std::tuple(f.ray, f.t, f.instance, f.primitive); });
-  lists.offsets.reserve(rays + 1);
-  for (std::size_t i = 0, at = 0; i < rays; ++i) {
-    for (std::size_t count = 0; at < found.size() && found[at].ray == i; ++at, ++count)
-      if (count < max_count) lists.items.push_back(found[at]);
-    lists.offsets.push_back(lists.items.size());
-  }
-}
-
 template <class Item>
 RayLists<SceneItem<Item>> lists_of_triangles(const SceneListCall& call) {
   const RaySource& rays = call.checked.rays;
-  if (call.common != nullptr) return lists_in_common<Item>(*call.common, rays, call.checked.options);
+  if (call.common != nullptr)
+    return lists_in_common<Item>(TreeAccess::traced(*call.common->geometry->triangles()),
+                                 call.common->numbers(), rays, call.checked.options);
   std::vector<Ray> active(rays.size());  // the others hit nothing
   for (std::size_t i = 0; i < active.size(); ++i)
     if (rays.takes_part(i)) active[i] = rays[i];
@@ -143,13 +130,7 @@ struct SurfaceDoor<Scene> {
   void count(const RaySource& given, std::span<CrossingCount> counts, const ListOptions& options) const {
     CheckedCall call("count_crossings", given, counts, options);
     call.options.max_count = ~0u;
-    const RayLists<SceneCrossing> lists = crossings_in("count_crossings", parts, call.rays, call.options);
-    for (std::size_t i = 0; i < lists.size(); ++i) {
-      if (!call.rays.takes_part(i)) continue;
-      counts[i] = {};
-      for (const SceneCrossing& crossing : lists[i])
-        ++counts[i].crossings, counts[i].winding += crossing.side;
-    }
+    set_counts(crossings_in("count_crossings", parts, call.rays, call.options), call.rays, counts);
   }
 
   const Scene& scene;

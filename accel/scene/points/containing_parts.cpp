@@ -5,7 +5,8 @@
 namespace raylanes {
 namespace {
 
-double determinant_of(const Transform& transform) {
+template <class AnyTransform>
+double determinant_of(const AnyTransform& transform) {
   double a[3][3];
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) a[i][j] = double{transform.row[i][j]};
@@ -15,9 +16,10 @@ double determinant_of(const Transform& transform) {
 }
 
 // The order of instances from inside out.
+template <class Parts>
 class Nesting {
  public:
-  explicit Nesting(const SceneParts& scene) : scene_(scene), volumes_(scene.instances.size(), -1.0) {}
+  explicit Nesting(const Parts& scene) : scene_(scene), volumes_(scene.instances.size(), -1.0) {}
   bool is_before(std::uint32_t a, std::uint32_t b) {
     const double of_a = volume(a), of_b = volume(b);
     return of_a < of_b || (of_a == of_b && a < b);
@@ -30,7 +32,7 @@ class Nesting {
  private:
   double volume(std::uint32_t number) {
     double& volume = volumes_[number];
-    const Instance& instance = scene_.instances[number];
+    const auto& instance = scene_.instances[number];
     if (volume < 0.0) {
       volume = scene_.geometries[instance.geometry]->volume() * std::abs(determinant_of(instance.transform));
       if (std::isnan(volume)) volume = std::numeric_limits<double>::infinity();
@@ -38,17 +40,16 @@ class Nesting {
     return volume;
   }
 
-  const SceneParts& scene_;
+  const Parts& scene_;
   std::vector<double> volumes_;  // of instances; negative: not known yet
 };
 
-}  // namespace
-
-void Scene::innermost_parts(Points points, std::span<ContainingPart> parts,
-                            const LocateOptions& options) const {
-  const CheckedPoints<float> call("innermost_parts", points, "parts", parts, options.active);
-  PartPlaces places("innermost_parts", this->parts(), options);
-  Nesting nesting(this->parts());
+template <class Parts, class T>
+void find_innermost(const Parts& scene, const VertexRecords<T>& points, std::span<ContainingPart> parts,
+                    const LocateOptions& options) {
+  const CheckedPoints<T> call("innermost_parts", points, "parts", parts, options.active);
+  PartPlaces places("innermost_parts", scene, options);
+  Nesting nesting(scene);
   places.each(points, call.active, [&](std::size_t begin, std::size_t end, std::span<const PartPlace> found) {
     for (std::size_t i = begin; i < end; ++i)
       if (takes_part(call.active, i)) parts[i] = {};
@@ -59,11 +60,13 @@ void Scene::innermost_parts(Points points, std::span<ContainingPart> parts,
   });
 }
 
-RayLists<ContainingPart> Scene::containing_parts(Points points, const LocateOptions& options) const {
+template <class Parts, class T>
+RayLists<ContainingPart> find_containing(const Parts& scene, const VertexRecords<T>& points,
+                                         const LocateOptions& options) {
   const QuietFloats quiet;
   require_points("containing_parts", points);
-  PartPlaces places("containing_parts", parts(), options);
-  Nesting nesting(parts());
+  PartPlaces places("containing_parts", scene, options);
+  Nesting nesting(scene);
   RayLists<ContainingPart> lists;
   lists.offsets.reserve(points.count + 1);
   std::vector<PartPlace> sorted;
@@ -80,6 +83,23 @@ RayLists<ContainingPart> Scene::containing_parts(Points points, const LocateOpti
                 }
               });
   return lists;
+}
+
+}  // namespace
+
+void Scene::innermost_parts(Points points, std::span<ContainingPart> parts,
+                            const LocateOptions& options) const {
+  find_innermost(this->parts(), points, parts, options);
+}
+RayLists<ContainingPart> Scene::containing_parts(Points points, const LocateOptions& options) const {
+  return find_containing(parts(), points, options);
+}
+void SceneD::innermost_parts(Points points, std::span<ContainingPart> parts,
+                             const LocateOptions& options) const {
+  find_innermost(this->parts(), points, parts, options);
+}
+RayLists<ContainingPart> SceneD::containing_parts(Points points, const LocateOptions& options) const {
+  return find_containing(parts(), points, options);
 }
 
 }  // namespace raylanes

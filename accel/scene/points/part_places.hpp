@@ -3,7 +3,9 @@
 
 #include <raylanes/scene.hpp>
 
+#include "../../batch/checked_call.hpp"
 #include "../../batch/in_parallel.hpp"
+#include "../doubles/scene_d_parts.hpp"
 #include "../scene_parts.hpp"
 
 namespace raylanes {
@@ -27,20 +29,43 @@ void each_seen(const SceneParts& scene, std::uint32_t mask, const Visit& visit) 
         if (member.instance != no_part && !member.is_struck) visit(member.instance);
 }
 
+// In scenes of doubles.
+template <class Visit>
+void each_seen(const SceneDParts& scene, std::uint32_t mask, const Visit& visit) {
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+    if ((scene.instances[i].mask & mask) != 0 && scene.boxes[i].lo[0] <= scene.boxes[i].hi[0]) visit(i);
+}
+
+// The tree of a part of triangles, built on several threads if there is none yet.
+inline const Bvh& tree_of_part(const SceneParts& scene, std::uint32_t instance, int threads) {
+  return *scene.geometries[scene.instances[instance].geometry]->built(threads);
+}
+inline const BvhD& tree_of_part(const SceneDParts& scene, std::uint32_t instance, int) {
+  return *scene.geometries[scene.instances[instance].geometry]->tree;
+}
+// Scenes of doubles consist of triangles.
+inline void require_triangles_seen(const char*, const SceneDParts& scene, std::uint32_t) {
+  require_current(scene.is_current);
+}
+
 // The places of points, so many at a time. Which points are located together depends on nothing but their order: in
 // open meshes locations depend on neighbours.
+// `Parts`: SceneParts or SceneDParts.
+template <class Parts>
 class PartPlaces {
+  using Points = VertexRecords<typename Parts::Number>;
+
  public:
   // Throws as PointQueries<Scene>::locate().
-  PartPlaces(const char* call, const SceneParts& scene, const LocateOptions& options);
+  PartPlaces(const char* call, const Parts& scene, const LocateOptions& options);
 
   // Calls take(begin, end, places) for some of the points at a time, also if there are none. Places are of points that
   // an instance contains, which count from `begin`, instance by instance.
   template <class Take>
-  void each(const VertexView& points, LaneBits active, const Take& take) {
+  void each(const Points& points, LaneBits active, const Take& take) {
     std::size_t first = 0;
     do {
-      VertexView some = points;
+      Points some = points;
       some.count = std::min(at_once_, points.count - first);
       if (first > 0) some.first = points.address(first);
       const StepProgress step = StepProgress::of(options_.progress, first, some.count, points.count);
@@ -51,7 +76,7 @@ class PartPlaces {
   }
 
  private:
-  std::span<const PartPlace> find(const VertexView& points, LaneBits active, const Progress* progress);
+  std::span<const PartPlace> find(const Points& points, LaneBits active, const Progress* progress);
   struct Task {
     std::uint32_t instance;
     std::size_t begin, end;  // of candidates_
@@ -61,12 +86,12 @@ class PartPlaces {
     std::uint32_t instance, point;
   };
 
-  void look_at(const VertexView& points, LaneBits active, std::size_t begin, std::size_t end,
+  void look_at(const Points& points, LaneBits active, std::size_t begin, std::size_t end,
                std::vector<Candidate>& found) const;
   void sort(std::span<const std::vector<Candidate>> found);
-  void locate(const Task& task, const VertexView& points, TraceCounters* counters);
+  void locate(const Task& task, const Points& points, TraceCounters* counters);
 
-  const SceneParts& scene_;
+  const Parts& scene_;
   const LocateOptions& options_;
   std::size_t at_once_;                    // a multiple of 8
   std::vector<std::uint32_t> seen_;        // by the rule winding: all
@@ -76,8 +101,25 @@ class PartPlaces {
   std::vector<PartPlace> places_;
 };
 
+// As PointQueries<Scene>::locate(), where one location counts more than another one.
+template <class Parts, class T>
+void find_places(const char* name, const Parts& scene, const VertexRecords<T>& points,
+                 std::span<Location> locations, const LocateOptions& options, Location counts_more) {
+  const CheckedPoints<T> call(name, points, "locations", locations, options.active);
+  PartPlaces places(name, scene, options);
+  places.each(points, call.active, [&](std::size_t begin, std::size_t end, std::span<const PartPlace> found) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (takes_part(call.active, i)) locations[i] = Location::outside;
+    for (const PartPlace& place : found) {
+      Location& location = locations[begin + place.point];
+      if (location != counts_more) location = place.is_on ? Location::on : Location::inside;
+    }
+  });
+}
+
 // As PointQueries<Scene>::winding_numbers().
-void sum_winding_numbers(const SceneParts& scene, const VertexView& points, std::span<float> numbers,
+template <class Parts, class T>
+void sum_winding_numbers(const Parts& scene, const VertexRecords<T>& points, std::span<T> numbers,
                          const WindingOptions& options);
 
 }  // namespace raylanes

@@ -128,33 +128,17 @@ class PointDoor<Scene> {
 
   // Inside an instance, if there is one.
   void locate(const VertexView& points, std::span<Location> locations, const LocateOptions& options) const {
-    find_places("locate", points, locations, options, Location::inside);
+    find_places("locate", scene_, points, locations, options, Location::inside);
   }
   // On the surface of an instance, if there is one.
   void sides(const VertexView& points, std::span<Location> locations, const LocateOptions& options) const {
-    find_places("signed_distances", points, locations, options, Location::on);
+    find_places("signed_distances", scene_, points, locations, options, Location::on);
   }
   void wind(const VertexView& points, std::span<float> numbers, const WindingOptions& options) const {
     sum_winding_numbers(scene_, points, numbers, options);
   }
 
  private:
-  // `first` is the location that counts more than another one.
-  void find_places(const char* name, const VertexView& points, std::span<Location> locations,
-                   const LocateOptions& options, Location first) const {
-    const CheckedPoints<float> call(name, points, "locations", locations, options.active);
-    PartPlaces places(name, scene_, options);
-    places.each(points, call.active,
-                [&](std::size_t begin, std::size_t end, std::span<const PartPlace> found) {
-                  for (std::size_t i = begin; i < end; ++i)
-                    if (takes_part(call.active, i)) locations[i] = Location::outside;
-                  for (const PartPlace& place : found) {
-                    Location& location = locations[begin + place.point];
-                    if (location != first) location = place.is_on ? Location::on : Location::inside;
-                  }
-                });
-  }
-
   const SceneParts& scene_;
 };
 

@@ -77,8 +77,7 @@ bool moved_corners(const LeafBlock<9>& block, std::size_t lane, const Transform&
 }  // namespace
 
 void require_triangles_seen(const char* call, const SceneParts& scene, std::uint32_t mask) {
-  if (!scene.is_current)
-    throw std::logic_error("scene: it was changed; update() comes before the next query");
+  require_current(scene.is_current);
   if (!scene.has_others()) return;
   for (const TopLevel& top : scene.tops) {
     if (top.walked.entries != nullptr) continue;

@@ -8,7 +8,8 @@
 
 namespace raylanes {
 
-inline bool is_finite(const Float3& point) {
+template <class T>
+bool is_finite(const std::array<T, 3>& point) {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
 

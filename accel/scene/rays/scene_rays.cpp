@@ -21,8 +21,7 @@ SceneQuery checked_query(const SceneParts& scene, const TraceOptions& options) {
         "scene: masks are of the triangles of one tree; set_triangle_masks() gives them to a geometry");
   if (options.facing != Facing::any)
     for (const auto& geometry : scene.geometries) geometry->require(options);
-  if (!scene.is_current)
-    throw std::logic_error("scene: it was changed; update() comes before the next query");
+  require_current(scene.is_current);
   SceneQuery query{{options.test, traversal.choice, kernels_of(checked_path(options.path))},
                    scene,
                    options.mask,
@@ -144,7 +143,8 @@ struct ListsOfCommon {
   explicit operator bool() const { return tree != nullptr; }
   RayLists<SceneHit> operator()(const std::vector<Ray>& rays, std::span<const SkippedPrimitive> skips,
                                 std::uint32_t most, const TraceOptions& by) const {
-    return lists_in_common<Hit>(*tree, {.records = rays, .skip = skips}, options_of_lists(by, most));
+    return lists_in_common<Hit>(TreeAccess::traced(*tree->geometry->triangles()), tree->numbers(),
+                                {.records = rays, .skip = skips}, options_of_lists(by, most));
   }
 };
 

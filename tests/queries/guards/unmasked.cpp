@@ -8,7 +8,7 @@
 #include <raylanes/bounded_tree.hpp>
 #include <raylanes/closed_mesh.hpp>
 #include <raylanes/doubles.hpp>
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 #include <raylanes/sphere_tree.hpp>
 
 #include "../../doubles/double_cases.hpp"
@@ -202,6 +202,53 @@ void add_refits(Calls& calls, const std::string& of, Tree& tree, const AnyMesh& 
   };
 }
 
+// The calls of scenes of triangles, but nearest hits; `tree` may be a part.
+template <class T, class AnyScene, class Tree, class AnyHit, class Closest>
+void add_scene(Calls& calls, const std::string& of, AnyScene& scene, Tree tree, Batch<T, AnyHit>& b,
+               std::vector<Closest>& closest, const Path* path, int threads) {
+  const ListOptions lists{.path = path, .threads = threads};
+  const LocateOptions places{.path = path, .threads = threads};
+  const auto part = std::make_shared<const Tree>(std::move(tree));
+  calls[of + "::all_hits"] = [&, lists] { scene.all_hits(b.rays, lists), scene.all_hits(b.arrays, lists); };
+  calls[of + "::crossings"] = [&, lists] { scene.crossings(b.arrays, lists); };
+  calls[of + "::count_crossings"] = [&, lists] { scene.count_crossings(b.rays, b.counts, lists); };
+  calls[of + "::normals"] = [&, threads] {
+    std::vector<PointOf<T>> normals(b.hits.size());
+    scene.normals(b.hits, normals, threads);
+  };
+  calls[of + "::corners"] = [&, threads] {
+    std::vector<std::conditional_t<sizeof(T) == 4, Triangle, TriangleD>> triangles(b.hits.size());
+    scene.corners(b.hits, triangles, threads);
+  };
+  add_points<T>(calls, of, scene, b, closest, path, threads);
+  calls[of + "::innermost_parts"] = [&, places] {
+    std::vector<ContainingPart> parts(b.points.size());
+    scene.innermost_parts(b.points, parts, places);
+  };
+  calls[of + "::containing_parts"] = [&, places] { scene.containing_parts(b.points, places); };
+  calls[of + "::place"] = calls[of + "::add"] = [part] {
+    AnyScene other;
+    other.add(part);
+    using Numbers = std::numeric_limits<T>;
+    for (const T x :
+         {T(0), Numbers::denorm_min(), T(1) / 3, Numbers::max(), Numbers::infinity(), Numbers::quiet_NaN()})
+      other.place(0, {{{1, x, 0, 1}, {0, T(0.3), x, 0}, {0, 0, 1, x}}});
+    other.update(), other.bounds();
+  };
+  calls[of + "::replace"] = [&, part] { scene.replace(0, part), scene.update(); };
+  calls[of + "::move"] = [&] {
+    scene.move(1, {{{1, 0, 0, T(0.7)}, {0, T(0.3), 0, 0}, {0, 0, 1, 0}}}), scene.update();
+  };
+  calls[of + "::update"] = [&, threads] { scene.update(threads); };
+  calls[of + "::set_mask"] = [&] { scene.set_mask(0, scene.mask_of(0)), scene.update(); };
+  calls[of + "::tree"] = [&] { scene.tree(0); };
+  calls[of + "::geometry_count"] = [&] { scene.geometry_count(); };
+  calls[of + "::instance_count"] = [&] { scene.instance_count(); };
+  calls[of + "::geometry_of"] = [&] { scene.geometry_of(0); };
+  calls[of + "::transform_of"] = [&] { scene.transform_of(0); };
+  calls[of + "::mask_of"] = [&] { scene.mask_of(0); };
+}
+
 // Meshes with all that is odd: holes, tiny and huge coordinates, triangles without area; all on a line; nothing.
 std::vector<Mesh> meshes() {
   Mesh odd = without(ellipsoid(2, {0, 0, 0}, {1.25f, 1, 1}), 0.1, 802), line, flat = cube(-1, 1);
@@ -268,6 +315,25 @@ TEST_F(Unmasked, trees_of_doubles) {
   }
 }
 
+TEST_F(Unmasked, scenes_of_doubles) {
+  const DoubleMesh mesh = moved(cube(-1, 1), 1, {0, 0, 0});  // few triangles: integers take their time
+  on_each_path([&](const Path* path, int threads) {
+    for (const bool stands : {true, false}) {
+      Batch<double, SceneHitD> b;
+      std::vector<SceneClosestPointD> closest(b.points.size());
+      Calls calls;
+      SceneD scene;
+      scene.add(mesh.vertices, mesh.triangles), scene.place(0);
+      scene.place(0, stands ? TransformD() : TransformD{{{1, 0, 0, 1}, {0, 0.3, 0, 0}, {0, 0, 1, 1e-310}}});
+      scene.update(threads);
+      add_nearest<double>(calls, "SceneD", scene, b, TraceOptionsD{.path = path, .threads = threads});
+      add_scene<double>(calls, "SceneD", scene, BvhD(mesh.vertices, mesh.triangles), b, closest, path,
+                        threads);
+      run(calls);
+    }
+  });
+}
+
 TEST_F(Unmasked, scenes_spheres_and_boxes) {
   Random random(803);
   std::vector<Sphere> spheres(100);
@@ -302,49 +368,18 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     run(calls);
     calls.clear();
     add_nearest<float>(calls, "Scene", solid, of_scene, TraceOptions{.path = path, .threads = threads});
-    calls["Scene::all_hits"] = [&] {
-      const ListOptions lists{.path = path, .threads = threads};
-      for (const Scene* each : {&scene, &solid}) each->all_hits(of_scene.rays, lists);
-      std::vector<CrossingCount> counts(of_scene.rays.size());
-      solid.crossings(of_scene.arrays, lists), solid.count_crossings(of_scene.rays, counts, lists);
-    };
-    calls["Scene::normals"] = [&] {
-      std::vector<Float3> normals(of_scene.hits.size());
-      solid.normals(of_scene.hits, normals, threads);
-    };
-    calls["Scene::corners"] = [&] {
-      std::vector<Triangle> triangles(of_scene.hits.size());
-      solid.corners(of_scene.hits, triangles, threads);
-    };
     std::vector<SceneClosestPoint> closest(of_scene.points.size());
-    add_points<float>(calls, "Scene", solid, of_scene, closest, path, threads);
-    calls["Scene::innermost_parts"] = [&] {
-      std::vector<ContainingPart> parts(of_scene.points.size());
-      solid.innermost_parts(of_scene.points, parts, {.path = path, .threads = threads});
+    add_scene<float>(calls, "Scene", solid, Bvh(ball), of_scene, closest, path, threads);
+    calls["Scene::all_hits of spheres"] = [&] {
+      scene.all_hits(of_scene.rays, {.path = path, .threads = threads});
     };
-    calls["Scene::containing_parts"] = [&] {
-      solid.containing_parts(of_scene.points, {.path = path, .threads = threads});
-    };
-    calls["Scene::place"] = [&] {
-      Scene other;
-      other.add(std::make_shared<const Bvh>(mesh));
-      for (const float x : {0.0f, 1e-42f, 1.0f / 3, 3e38f, infinity, std::nanf("")})
-        other.place(0, {{{1, x, 0, 1}, {0, 0.3f, x, 0}, {0, 0, 1, x}}});
-      other.update(), other.bounds();
-    };
-    calls["Scene::add"] = [&] {
-      Scene().add(Bvh(mesh)), Scene().add(SphereTree(spheres));
+    calls["Scene::add of others"] = [&] {
+      Scene().add(SphereTree(spheres));
       Scene other;
       other.place(other.add(solid), {{{3e38f, 1e-40f, 0, 3e38f}, {0, 3, 0, 0}, {0, 0, 1e-30f, 1}}});
       other.update(threads);
     };
-    calls["Scene::replace"] = [&] { solid.replace(0, Bvh(ball)), solid.update(); };
     calls["Scene::refit"] = [&] { solid.refit(0, ball.vertices, ball.triangles, threads), solid.update(); };
-    calls["Scene::move"] = [&] {
-      solid.move(1, {{{1, 0, 0, 0.7f}, {0, 0.3f, 0, 0}, {0, 0, 1, 0}}}), solid.update();
-    };
-    calls["Scene::update"] = [&] { solid.update(); };
-    calls["Scene::set_mask"] = [&] { solid.set_mask(0, solid.mask_of(0)); };
     calls["Scene::set_triangle_masks"] = [&] {
       const std::vector<std::uint32_t> masks(3, 1);
       Scene other = solid;
@@ -354,13 +389,7 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     };
     calls["Scene::set_moving"] = [&] { solid.set_moving(1, true), solid.update(threads); };
     calls["Scene::report"] = [&] { solid.report(); };
-    calls["Scene::tree"] = [&] { solid.tree(0); };
-    calls["Scene::geometry_count"] = [&] { solid.geometry_count(); };
-    calls["Scene::instance_count"] = [&] { solid.instance_count(); };
-    calls["Scene::geometry_of"] = [&] { solid.geometry_of(0); };
-    calls["Scene::transform_of"] = [&] { solid.transform_of(0); };
     calls["Scene::levels_of"] = [&] { solid.levels_of(0); };
-    calls["Scene::mask_of"] = [&] { solid.mask_of(0); };
     calls["Scene::save"] = calls["Scene::load"] = [&] {
       std::stringstream file;
       scene.save(file);

@@ -1,6 +1,6 @@
 // Filters of batches large enough for lists of hits, on rays through many layers: which hits are kept, and the order in
 // which a filter is asked.
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 
 #include "../../support/filtered.hpp"
 #include "worlds.hpp"
@@ -110,19 +110,22 @@ TYPED_TEST(FiltersOfMany, ask_along_each_ray) {
   }
 }
 
-TEST(FiltersOfScenes, ask_along_each_ray) {
-  const std::vector<Ray> rays = rays_up(2200);
+TYPED_TEST(FiltersOfMany, ask_along_each_ray_of_scenes) {
+  using T = TypeParam;
+  using AnyScene = std::conditional_t<std::is_same_v<T, float>, Scene, SceneD>;
+  using AnyHit = typename AnyScene::Hit;
+  const auto rays = rays_of<T>(rays_up(2200));
   for (const Case& of : cases) {
     SCOPED_TRACE(of.name);
-    Scene scene;
-    const Mesh mesh = layers(of.layers);
+    AnyScene scene;
+    const auto mesh = mesh_of<T>(layers(of.layers));
     for (const Index3& triangle : mesh.triangles) scene.place(scene.add(mesh.vertices, std::array{triangle}));
     scene.update();
-    std::vector<SceneHit> skip(rays.size());
+    std::vector<AnyHit> skip(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i)
       skip[i].primitive = 0, skip[i].instance = static_cast<std::uint32_t>(i % 9);
-    expect_kept<SceneHit>(scene, rays, of, TraceOptions{});
-    expect_kept<SceneHit>(scene, rays, of, TraceOptions{}, skip);
+    expect_kept<AnyHit>(scene, rays, of, TraceOptionsOf<T>{});
+    expect_kept<AnyHit>(scene, rays, of, TraceOptionsOf<T>{}, skip);
   }
 }
 
