@@ -92,6 +92,18 @@ TEST(NestedScene, sees_changes_of_its_own_geometries_alone) {
   expect_leaves(all.nested, all.rays);
 }
 
+TEST(NestedScene, keeps_trees_that_the_added_scene_refits) {
+  const Mesh mesh = cube(-1, 1), other = cube(2, 3);
+  const Ray ray = make_ray({0.25f, 0.125f, -5}, {0, 0, 1});
+  Scene part, whole;
+  part.add(Bvh(mesh)), part.place(0);
+  whole.place(whole.add(part)), whole.update();
+  part.refit(0, other.vertices, other.triangles), part.update();
+  EXPECT_FALSE(part.closest(ray));
+  EXPECT_EQ(whole.closest(ray).t, 4);
+  EXPECT_NE(part.tree(0), whole.tree(1));
+}
+
 TEST(NestedScene, refuses_changes_of_what_another_instance_places) {
   Random random(1820);
   Changed all(random);
