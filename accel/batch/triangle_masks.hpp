@@ -9,8 +9,21 @@ namespace raylanes {
 template <class Options>
 TriangleMasks masks_of(const Options& options) {
   if constexpr (requires { options.masks; })
-    if (!options.masks.empty()) return {options.masks.data(), options.masks.size(), options.mask};
+    if (!options.masks.empty()) {
+      TriangleMasks masks{options.masks.data(), options.masks.size(), options.mask};
+      if constexpr (requires { options.filter_mask; }) masks.filter_mask = options.filter_mask;
+      return masks;
+    }
   return {};
 }
+// Whether a filter is asked about a hit.
+struct MayReject {
+  TriangleMasks masks;
+
+  template <class AnyHit>
+  bool operator()(const AnyHit& hit) const {
+    return masks.may_reject(hit.primitive);
+  }
+};
 
 }  // namespace raylanes

@@ -36,7 +36,11 @@ raylanes_ray_options ray_defaults() {
           .filter = nullptr,
           .filter_context = nullptr,
           .progress = nullptr,
-          .progress_context = nullptr};
+          .progress_context = nullptr,
+          .masks = nullptr,
+          .mask_count = 0,
+          .filter_mask = TraceOptions().filter_mask,
+          .unused = 0};
 }
 
 raylanes_point_options point_defaults() {
@@ -66,6 +70,15 @@ Progress progress_of(raylanes_progress function, void* context) {
   return [=](double share) {
     if (function(context, share) != 0) throw Cancelled();
   };
+}
+
+std::span<const std::uint32_t> masks_of(const raylanes_ray_options& c) {
+  if (c.masks == nullptr && c.mask_count > 0)
+    throw std::invalid_argument("options: " + std::to_string(c.mask_count) +
+                                " masks, and a null pointer to them");
+  if (c.mask_count > std::numeric_limits<std::size_t>::max() / sizeof *c.masks)
+    throw std::invalid_argument("options: masks reach beyond the address space");
+  return {c.masks, c.mask_count};
 }
 
 void refuse_filter(const raylanes_ray_options& c) {

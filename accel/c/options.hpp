@@ -31,6 +31,8 @@ Options completed(const Options* given, const Options& defaults) {
 
 // The function of C as the classes take it; empty for none.
 Progress progress_of(raylanes_progress function, void* context);
+// The words of triangles.
+std::span<const std::uint32_t> masks_of(const raylanes_ray_options& c);
 // Throws std::invalid_argument if there is a filter.
 void refuse_filter(const raylanes_ray_options& c);
 
@@ -56,6 +58,8 @@ class RayOptions {
     if (c_.skip != nullptr)
       options_.skip = {c_.skip, count, skip_stride(count), is_in_scene ? c_.skip_to_instance : 0};
     if constexpr (requires { options_.mask; }) options_.mask = c_.mask;
+    if constexpr (requires { options_.filter_mask; }) options_.filter_mask = c_.filter_mask;
+    if constexpr (requires { options_.masks; }) options_.masks = masks_of(c_);
     if constexpr (requires { options_.after; })
       if (c_.after != nullptr)
         options_.after = {c_.after, count,

@@ -23,16 +23,19 @@ struct StreamSizes {
   std::uint32_t closest = 256, occluded = 256;
 };
 
-// Which triangles are there for a call: those whose word has a bit of `mask`, and those without a word. Inlined always,
-// so that no symbol has a path's instructions.
+// Which triangles are there for a call: those whose word has a bit of `mask`, and those without a word; and about which
+// a filter is asked. Inlined always, so that no symbol has a path's instructions.
 struct TriangleMasks {
   const std::uint32_t* words = nullptr;  // of primitives; null: all are there
   std::size_t count = 0;
-  std::uint32_t mask = ~0u;
+  std::uint32_t mask = ~0u, filter_mask = ~0u;
 
   [[gnu::always_inline]] bool see_all() const { return words == nullptr; }
   [[gnu::always_inline]] bool see(std::uint32_t primitive) const {
     return primitive >= count || (words[primitive] & mask) != 0;
+  }
+  [[gnu::always_inline]] bool may_reject(std::uint32_t primitive) const {
+    return primitive >= count || (words[primitive] & filter_mask) != 0;
   }
 };
 

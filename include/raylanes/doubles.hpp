@@ -39,6 +39,7 @@ struct TraceOptionsD {
   PrimitiveView skip =
       {};  ///< for each ray a triangle that is not there for it; empty: none; as in TraceOptions
   std::uint32_t mask = ~0u;                   ///< of instances of a scene, or for `masks`, as in TraceOptions
+  std::uint32_t filter_mask = ~0u;            ///< for `masks`: as in TraceOptions
   std::span<const std::uint32_t> masks = {};  ///< of triangles, as in TraceOptions
   /// For closest(): returns for ray i the first hit after `after[i]`, in the order of t, then of primitives; otherwise
   /// as TraceOptions::after. Other calls ignore it.

@@ -234,13 +234,22 @@ typedef struct raylanes_ray_options {
   /// t = -infinity the first. Default NULL: none.
   const void* after;
   size_t after_stride;
-  uint32_t mask;  ///< in scenes: instances whose mask has a bit in common with it are there; default all bits
+  /// In scenes: instances whose mask has a bit in common with it are there; in trees it goes with `masks`. Default all
+  /// bits.
+  uint32_t mask;
   /// In scenes: the bytes from the primitives of `skip` to their instances; default as in a raylanes_scene_hit.
   int32_t skip_to_instance;
   raylanes_filter filter;  ///< of closest, closest1 and occluded…; others refuse it; default NULL
   void* filter_context;
   raylanes_progress progress;  ///< of batches; default NULL
   void* progress_context;
+  /// In trees: a word for each triangle up to mask_count, which is there if its word has a bit in common with `mask`;
+  /// triangles behind them are there. A filter is asked only about triangles whose word has a bit in common with
+  /// filter_mask, and about those without a word. Default NULL and 0: all are there; and all bits. Scenes refuse them.
+  const uint32_t* masks;
+  size_t mask_count;
+  uint32_t filter_mask;
+  uint32_t unused;
 } raylanes_ray_options;
 
 /// How points are looked up.

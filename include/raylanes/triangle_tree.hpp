@@ -52,6 +52,10 @@ struct TraceOptions {
   PrimitiveView skip = {};
   /// In scenes: only instances whose mask has a bit in common with this one are there. In trees this goes with `masks`.
   std::uint32_t mask = ~0u;
+  /// With `masks`: a filter is asked only about triangles whose word has a bit in common with this, and about triangles
+  /// without a word. Hits of the others count as they are. So two bits of a word say of a triangle that it is solid,
+  /// open, or to be asked about; a filter that looks at a texture is asked about few hits.
+  std::uint32_t filter_mask = ~0u;
   /// In trees, for TriangleTest::exact: triangle i is there only if masks[i] has a bit in common with `mask`. Triangles
   /// from masks.size() on are there. So an empty span, the default, asks nothing and costs nothing. Triangles that are
   /// not there have no hits and no crossings; the call is asked about none of them, and takes about the time of one

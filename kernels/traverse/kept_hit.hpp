@@ -66,9 +66,11 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
   }
 
  private:
-  // Asks about a hit that counts, and keeps it if it is not rejected.
-  bool take(const HitOf<T>& hit) {
-    if (asked.rejects != nullptr && asked.rejects(asked.function, hit)) return false;
+  // Asks about a hit that counts, if its triangle is one to ask about, and keeps it if it is not rejected.
+  bool take(const HitOf<T>& hit, const TriangleMasks& masks) {
+    const bool is_rejected =
+        asked.rejects != nullptr && masks.may_reject(hit.primitive) && asked.rejects(asked.function, hit);
+    if (is_rejected) return false;
     best = hit, this->end_at(hit.t);
     return true;
   }
@@ -93,7 +95,9 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
       hit = exact_hit(triangles, ray_, leaf_triangle, along);
       if (!hit || !is_of_side(triangles, leaf_triangle)) return false;
     }
-    if (!is_better(hit.t, hit.primitive, best) || !is_after(hit, asked.after) || !take(hit)) return false;
+    if (!is_better(hit.t, hit.primitive, best) || !is_after(hit, asked.after) ||
+        !take(hit, triangles.masks()))
+      return false;
     const bool has_ended = first_one || asked.any;
     if (has_ended) beside = 0;
     return has_ended;

@@ -91,6 +91,7 @@ inline void take(TraceOptionsD& options, const TraceOptions& given) {
         "test: a tree of float64 has \"exact\" alone; a tree made with dtype=numpy.float32 has the others");
   options.path = given.path, options.threads = given.threads;
   options.facing = given.facing, options.active = given.active, options.skip = given.skip;
+  options.mask = given.mask, options.masks = given.masks, options.filter_mask = given.filter_mask;
 }
 
 // The primitives that rays skip: a row of one index each, or of two: with the instance.
@@ -101,6 +102,21 @@ inline PrimitiveView skips_of(const py::object& rows) {
   const auto columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 1;
   return {array.data(), static_cast<std::size_t>(array.shape(0)), columns * index,
           columns == 2 ? std::ptrdiff_t{index} : 0};
+}
+
+// The masks of triangles: None, or the mask of the call, the words, and the mask of its filter. The mask of a call to a
+// scene, where instances have masks.
+template <class Options>
+void set_masks(Options& options, const py::object& masks) {
+  if (masks.is_none()) return;
+  const auto all = masks.cast<py::tuple>();
+  options.mask = all[0].cast<std::uint32_t>();
+  const auto words = all[1].cast<py::array>();
+  options.masks = {static_cast<const std::uint32_t*>(words.data()), static_cast<std::size_t>(words.size())};
+  if constexpr (requires { options.filter_mask; }) options.filter_mask = all[2].cast<std::uint32_t>();
+}
+inline void set_masks(ListOptions& options, std::uint32_t mask) {
+  options.mask = mask;
 }
 
 // The hits after which rays look for the next; None: none.
@@ -122,10 +138,11 @@ enum How : std::size_t {
   how_threads,
   how_facing,
   how_progress,
-  how_skip
+  how_skip,
+  how_masks
 };
-inline constexpr std::array<const char*, 9> how_names{"test",    "grade",  "mode",     "hint", "path",
-                                                      "threads", "facing", "progress", "skip"};
+inline constexpr std::array<const char*, 10> how_names{"test",    "grade",  "mode",     "hint", "path",
+                                                       "threads", "facing", "progress", "skip", "masks"};
 
 template <class T>
 typename CallTypesOf<T>::Options trace_options(const py::tuple& how, const py::object& active,
@@ -143,6 +160,7 @@ typename CallTypesOf<T>::Options trace_options(const py::tuple& how, const py::o
   options.threads = usable_threads(how[how_threads].cast<int>());
   options.facing = named<Facing>("facing", facing_names, text(how_facing));
   options.active = bits_of(active, rays), options.skip = skips_of(how[how_skip]);
+  set_masks(options, how[how_masks]);
   typename CallTypesOf<T>::Options taken;
   take(taken, options);
   return taken;
@@ -224,31 +242,31 @@ void corners(const SharedTree<T>& shared, const py::array& primitives, const py:
   query(shared, [&](const TreeOf<T>& tree) { tree.corners(names, triangles); });
 }
 
-// Offsets and items, as bytes. Mask: that of a query of scenes, or nothing.
-template <class Shared, auto list, class... Mask>
+// Offsets and items, as bytes. Masks: as set_masks() takes them.
+template <class Shared, auto list, class Masks>
 py::tuple lists(const Shared& shared, const py::object& rays, std::uint32_t max_count, const char* facing,
                 const char* path, int threads, const py::object& active, const py::object& progress,
-                const py::object& skip, Mask... mask) {
+                const py::object& skip, Masks masks) {
   const RaysOf<typename Shared::Number> from(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
-  ((options.mask = mask), ...);
+  set_masks(options, masks);
   auto found = query(shared, options, progress, from.count, [&](const auto& tree, const auto& heard) {
     return std::invoke(list, tree, from, heard);
   });
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
-template <class Shared, class... Mask>
+template <class Shared, class Masks>
 void count_crossings(const Shared& shared, const py::object& rays, const py::array& counts,
                      const char* facing, const char* path, int threads, const py::object& active,
-                     const py::object& progress, const py::object& skip, Mask... mask) {
+                     const py::object& progress, const py::object& skip, Masks masks) {
   const RaysOf<typename Shared::Number> from(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
-  ((options.mask = mask), ...);
+  set_masks(options, masks);
   query(shared, options, progress, from.count,
         [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }

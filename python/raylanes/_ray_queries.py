@@ -4,8 +4,8 @@ import numpy as np
 
 from ._arrays import given_rays
 from ._meshes import warn_of_sides
-from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
-                      skipped)
+from ._traces import (EVERY_BIT, counted, filter_of, hits_after, how, listed, masked, nearest, shadows, shadows_from,
+                      shadows_towards, skipped)
 from .hits import Crossings, Hits, Stretches
 
 
@@ -30,7 +30,7 @@ class RayQueries:
 
     def closest(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
                 active=None, after=None, test="exact", grade="reproducible", mode="automatic", hint="none",
-                facing="any", skip=None, threads=0, progress=None):
+                facing="any", skip=None, mask=EVERY_BIT, masks=None, filter_mask=EVERY_BIT, threads=0, progress=None):
         """Find the nearest hit of each ray.
 
         Ties in t go to the lowest primitive. By the test "exact" the result is that of exact arithmetic, with t, u and
@@ -70,6 +70,14 @@ class RayQueries:
         skip : array of uint32, or hits, optional
             A triangle for each ray that is not there for it, such as the one that the ray begins on: its index, or hits
             of an earlier call. 2^32 - 1, as in a miss, leaves out none. The test must be "exact".
+        mask : int, default 2^32 - 1
+            For `masks`.
+        masks : array of uint32, optional
+            A word for each triangle: it is there if its word has a bit in common with `mask`. Triangles behind the last
+            word are there. The test must be "exact".
+        filter_mask : int, default 2^32 - 1
+            With `masks`: `filter` is asked only about triangles whose word has a bit in common with this, and about
+            those without a word. Hits of others stay.
         threads : int, default 0
             At most so many threads; 0: all cores.
         progress : function, optional
@@ -94,12 +102,14 @@ class RayQueries:
         array([False])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip),
+                    masked(mask, masks, filter_mask))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest(
             given, answer.rows, asked, bits, hits_after(after, answer), self._filter(filter)))
 
     def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, out=None, active=None,
-                         after=None, mode="automatic", hint="none", facing="any", skip=None, threads=0, progress=None):
+                         after=None, mode="automatic", hint="none", facing="any", skip=None, mask=EVERY_BIT, masks=None,
+                         threads=0, progress=None):
         """Find the nearest hit at which each ray passes through the surface.
 
         An edge between two triangles counts once, or not at all where the ray only touches it. So rays enter and leave
@@ -108,7 +118,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, out, active, mode, hint, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, out, active, mode, hint, facing, skip, mask, masks, threads, progress
             As in closest(), by the test "exact".
         after : Hits, optional
             For each ray a hit: the result is the closest crossing after it, in the order of t, then of primitives.
@@ -126,18 +136,21 @@ class RayQueries:
         (array([2.5, inf], dtype=float32), array([False, False]))
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how("exact", "reproducible", mode, hint, self._sides(facing), threads, progress, skipped(skip))
+        asked = how("exact", "reproducible", mode, hint, self._sides(facing), threads, progress, skipped(skip),
+                    masked(mask, masks))
         return nearest(self._numbers, Hits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
             given, answer.rows, asked, bits, hits_after(after, answer)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, filter=None, out=None,
                  active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",
-                 skip=None, threads=0, progress=None):
+                 skip=None, mask=EVERY_BIT, masks=None, filter_mask=EVERY_BIT, threads=0, progress=None):
         """Find out whether the segment of each ray hits anything.
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, filter, out, test, grade, mode, hint, facing, skip, threads, progress
+        rays, origins, directions, tmin, tmax, filter, out, test, grade, mode, hint, facing, threads, progress
+            As in closest().
+        skip, mask, masks, filter_mask
             As in closest().
         active : array of bool, optional
             The active rays, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -153,14 +166,15 @@ class RayQueries:
         array([False,  True])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip),
+                    masked(mask, masks, filter_mask))
         return shadows(self._numbers, rays, out, active,
                        lambda given, answers, bits: self._tree.occluded(
                            given, answers, asked, bits, self._filter(filter)))
 
     def occluded_from(self, origin, points, *, start=0.0, end=1.0, filter=None, out=None, active=None, test="exact",
-                      grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
-                      progress=None):
+                      grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, mask=EVERY_BIT,
+                      masks=None, filter_mask=EVERY_BIT, threads=0, progress=None):
         """Find out whether anything lies between one point, such as a light, and each of many points.
 
         This is the fastest way to trace shadows. Segments begin at `points` exactly, at any distance of the light:
@@ -180,7 +194,7 @@ class RayQueries:
             As in closest(); indices are rows of the flattened points, and t is 0 at the point and 1 at `origin`.
         facing : {"any", "front", "back"}, default "any"
             Triangles to count, by the side that `origin` sees.
-        out, test, grade, mode, hint, skip, threads, progress
+        out, test, grade, mode, hint, skip, mask, masks, filter_mask, threads, progress
             As in closest().
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -195,14 +209,15 @@ class RayQueries:
         >>> tree.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip),
+                    masked(mask, masks, filter_mask))
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(
                                 *given[:-1], asked, given[-1], self._filter(filter)))
 
     def occluded_towards(self, direction, points, *, filter=None, out=None, active=None, test="exact",
-                         grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
-                         progress=None):
+                         grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, mask=EVERY_BIT,
+                         masks=None, filter_mask=EVERY_BIT, threads=0, progress=None):
         """Find out whether anything lies in one direction, such as that of the sun, from each of many points.
 
         Parameters
@@ -211,7 +226,7 @@ class RayQueries:
             The direction in which all rays go, of any length, such as that towards the sun.
         points : array of float, shape (..., 3)
             The points where rays begin.
-        filter, out, test, grade, mode, hint, facing, skip, threads, progress
+        filter, out, test, grade, mode, hint, facing, skip, mask, masks, filter_mask, threads, progress
             As in closest(); indices are rows of the flattened points.
         active : array of bool, optional
             The active points, one bool for each. Inactive ones leave `out` unchanged; in a new array they are False.
@@ -226,13 +241,14 @@ class RayQueries:
         >>> tree.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip))
+        asked = how(test, grade, mode, hint, self._sides(facing), threads, progress, skipped(skip),
+                    masked(mask, masks, filter_mask))
         return shadows_towards(self._numbers, direction, points, out, active,
                                lambda *given: self._tree.occluded_from(
                                    *given[:-1], asked, given[-1], self._filter(filter)))
 
     def all_hits(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, facing="any",
-                 skip=None, active=None, threads=0, progress=None):
+                 skip=None, mask=EVERY_BIT, masks=None, active=None, threads=0, progress=None):
         """Find every hit of each ray, once, in the order of t, then of primitives.
 
         Parameters
@@ -245,7 +261,7 @@ class RayQueries:
             Keep the hits of these sides only, as in closest().
         active : array of bool, optional
             The active rays; the others have no hits.
-        skip, threads, progress
+        skip, mask, masks, threads, progress
             As in closest(), by the test "exact".
 
         Returns
@@ -263,10 +279,10 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.all_hits, Hits, self._numbers, self._numbers.hit, rays, max_count, facing, active,
-                      threads, progress, skipped(skip))
+                      threads, progress, skipped(skip), masked(mask, masks))
 
     def crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, facing="any",
-                  skip=None, active=None, threads=0, progress=None):
+                  skip=None, mask=EVERY_BIT, masks=None, active=None, threads=0, progress=None):
         """Find each crossing of a ray and the surface, once, also at edges and vertices.
 
         Simulation of simplicity decides there (Edelsbrunner, Mücke 1990): a ray leaves a closed mesh as often as it
@@ -274,7 +290,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, max_count, skip, active, threads, progress
+        rays, origins, directions, tmin, tmax, max_count, skip, active, mask, masks, threads, progress
             As in all_hits().
         facing : {"any", "front", "back"}, default "any"
             Keep crossings of these sides only: of the front, side is -1; of the back, 1.
@@ -291,10 +307,10 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.crossings, Crossings, self._numbers, self._numbers.crossing, rays, max_count, facing,
-                      active, threads, progress, skipped(skip))
+                      active, threads, progress, skipped(skip), masked(mask, masks))
 
     def stretches(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, max_count=None, skip=None,
-                  active=None, threads=0, progress=None):
+                  mask=EVERY_BIT, masks=None, active=None, threads=0, progress=None):
         """Find where each ray runs within solids: each entry with its exit, and the winding number between them.
 
         Lengths are right for rays through edges and corners, too: the sum of (exit - entry) * winding is that of exact
@@ -304,7 +320,7 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, max_count, skip, active, threads, progress
+        rays, origins, directions, tmin, tmax, max_count, skip, active, mask, masks, threads, progress
             As in all_hits().
 
         Returns
@@ -322,15 +338,15 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return listed(self._tree.stretches, Stretches, self._numbers, self._numbers.stretch, rays, max_count, "any",
-                      active, threads, progress, skipped(skip))
+                      active, threads, progress, skipped(skip), masked(mask, masks))
 
     def count_crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, facing="any",
-                        skip=None, out=None, active=None, threads=0, progress=None):
+                        skip=None, mask=EVERY_BIT, masks=None, out=None, active=None, threads=0, progress=None):
         """Count the crossings of each ray, and add up their sides.
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, out, skip, threads, progress
+        rays, origins, directions, tmin, tmax, out, skip, mask, masks, threads, progress
             As in closest(), by the test "exact".
         facing : {"any", "front", "back"}, default "any"
             Count crossings of these sides only, as in crossings().
@@ -349,4 +365,4 @@ class RayQueries:
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
         return counted(self._tree.count_crossings, self._numbers, rays, out, facing, active, threads, progress,
-                       skipped(skip))
+                       skipped(skip), masked(mask, masks))

@@ -2,11 +2,9 @@
 
 from ._arrays import SCENES, given_rays
 from ._scalars import count
-from ._traces import (counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from, shadows_towards,
-                      skipped_in_scene)
+from ._traces import (EVERY_BIT, counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from,
+                      shadows_towards, skipped_in_scene)
 from .scene_hits import SceneCrossings, SceneHits, SceneStretches
-
-EVERY_BIT = 0xFFFFFFFF
 
 
 class SceneQueries:

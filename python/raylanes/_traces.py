@@ -9,6 +9,8 @@ from ._scalars import count, function, real, threads_of, word
 from .hits import Lists
 from .paths import chosen
 
+EVERY_BIT = 0xFFFFFFFF
+
 
 def nearest(numbers, kind, rays, out, active, ask):
     """Hits of the class `kind`. ask(rows of rays, Answer, bits of active rays) writes them, also apart."""
@@ -27,23 +29,23 @@ def shadows(numbers, rays, out, active, ask):
     return answer.finish()
 
 
-def listed(ask, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip, *mask):
+def listed(ask, kind, numbers, dtype, rays, max_count, facing, active, threads, progress, skip, masks):
     """Lists of items of the class `kind`, records of `dtype`, which ask() returns as bytes. skip: as rows."""
     given, shape = ray_rows(rays, numbers)
     if len(shape) != 1:
         raise ValueError(f"rays: lists are of rays in one dimension, the shape is {shape}")
     limit = 0xFFFFFFFF if max_count is None else count("max_count", max_count, 0xFFFFFFFF)
     offsets, items = ask(given, limit, word("facing", facing), chosen(), threads_of(threads), packed(active, shape),
-                         function("progress", progress), skip, *mask)
+                         function("progress", progress), skip, masks)
     return Lists(offsets.view(np.int64), items.view(dtype).view(kind))
 
 
-def counted(ask, numbers, rays, out, facing, active, threads, progress, skip, *mask):
+def counted(ask, numbers, rays, out, facing, active, threads, progress, skip, masks):
     """The crossings of each ray, which ask() counts. skip: as rows."""
     given, shape = ray_rows(rays, numbers)
     answer = Answer(out, shape, count_dtype, given, None if active is None else np.zeros((), count_dtype))
     ask(given, answer.rows, word("facing", facing), chosen(), threads_of(threads), packed(active, shape),
-        function("progress", progress), skip, *mask)
+        function("progress", progress), skip, masks)
     return answer.finish()
 
 
@@ -71,14 +73,25 @@ def _shadows_of(name, instead, numbers, light, points, ends, out, active, ask):
     return answer.finish()
 
 
-if _native.how_names != ("test", "grade", "mode", "hint", "path", "threads", "facing", "progress", "skip"):
+if _native.how_names != ("test", "grade", "mode", "hint", "path", "threads", "facing", "progress", "skip", "masks"):
     raise ImportError(f"raylanes: the native module is another version's; it asks for {_native.how_names}")
 
 
-def how(test, grade, mode, hint, facing, threads, progress, skip):
+def how(test, grade, mode, hint, facing, threads, progress, skip, masks=None):
     """The options of a trace as the native module takes them: what its how_names say, in this order."""
     return (word("test", test), word("grade", grade), word("mode", mode), word("hint", hint), chosen(),
-            threads_of(threads), word("facing", facing), function("progress", progress), skip)
+            threads_of(threads), word("facing", facing), function("progress", progress), skip, masks)
+
+
+def masked(mask, masks, filter_mask=EVERY_BIT):
+    """The words of triangles and what they are compared with, as the native module takes them; None: there are none."""
+    bits, asked = count("mask", mask, EVERY_BIT), count("filter_mask", filter_mask, EVERY_BIT)
+    if masks is None:
+        return None
+    words = np.ascontiguousarray(unsigned("masks", masks), "<u4")
+    if words.ndim != 1:
+        raise ValueError(f"masks: one word for each triangle is needed, the shape is {words.shape}")
+    return bits, words, asked
 
 
 def skipped(skip):

@@ -96,6 +96,12 @@ class AnyArguments {
     if (hits.first != nullptr && hits.count > 0 && bytes_.chance(64))
       rays_.after = hits.first, rays_.after_stride = stride(hits.stride, sizeof(AnyHit));
     if (bytes_.chance(64)) rays_.mask = static_cast<std::uint32_t>(bytes_.below(4));
+    if (!is_in_scene && bytes_.chance(64)) {
+      for (std::uint32_t& word : words_) word = static_cast<std::uint32_t>(bytes_.below(4));
+      rays_.masks = words_, rays_.mask_count = bytes_.below(std::size(words_) + 1);
+      rays_.filter_mask = static_cast<std::uint32_t>(bytes_.below(4));
+      if (is_wrong()) rays_.masks = refused(nullptr), rays_.mask_count = 1 + bytes_.below(9);
+    }
     if (bytes_.chance(48)) rays_.progress = go_on;
     if (takes_filter ? bytes_.chance(48) : is_wrong())
       rays_.filter = takes_filter ? reject_in_c<AnyHit> : refused(reject_in_c<AnyHit>);
@@ -114,6 +120,8 @@ class AnyArguments {
       options.skip = {rays_.skip, n, rays_.skip_stride == 0 ? side_by_side : rays_.skip_stride,
                       rays_.skip_to_instance};
     if constexpr (requires { options.mask; }) options.mask = rays_.mask;
+    if constexpr (requires { options.filter_mask; }) options.filter_mask = rays_.filter_mask;
+    if constexpr (requires { options.masks; }) options.masks = {rays_.masks, rays_.mask_count};
     if constexpr (requires { options.after; })
       if (rays_.after != nullptr)
         options.after = HitRecords<AnyHit>(const_cast<void*>(rays_.after), n,
@@ -209,6 +217,7 @@ class AnyArguments {
   raylanes_ray_options rays_;
   raylanes_point_options points_;
   std::uint8_t mask_[(max_elements + 7) / 8];
+  std::uint32_t words_[24];
   static inline Strided<SceneHit, max_elements> skip_;
 };
 

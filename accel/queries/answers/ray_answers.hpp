@@ -5,6 +5,7 @@
 #include <raylanes/ray_queries.hpp>
 
 #include "../../batch/few_rays.hpp"
+#include "../../batch/triangle_masks.hpp"
 #include "../after.hpp"
 
 namespace raylanes {
@@ -168,10 +169,11 @@ class FilteredCall {
   void find(const Source& rays, const HitRecords<Hit>& hits, const Options& by) const {
     door_.require_order(by);
     door_.trace(rays, hits, by);
+    const MayReject may_reject{masks_of(by)};
     const auto lists = door_.lists(by);
     if constexpr (!std::is_same_v<decltype(lists), const NoLists>)
       if (filter_ && lists)
-        return replace_from_lists(rays, hits, filter_, lists.have_streams,
+        return replace_from_lists(rays, hits, filter_, may_reject, lists.have_streams,
                                   [&](const std::vector<RayOf<Number>>& some,
                                       const std::vector<std::size_t>& indices, std::uint32_t most) {
                                     const auto skips = skips_of(rays.skip, indices);
@@ -181,7 +183,8 @@ class FilteredCall {
         rays, hits, filter_, by,
         [&](const std::vector<RayOf<Number>>& some, std::vector<Hit>& last, const Options& again) {
           door_.trace({.records = some, .skip = again.skip}, last, again);
-        });
+        },
+        may_reject);
   }
 
   const RayDoor<Tree>& door_;

@@ -22,10 +22,10 @@ bool comes_after(const AnyHit& hit, const AnyHit& last) {
 
 // Asks about the hits of lists[k] after some.hits[k], in order, until one is kept. Rays stay in `some`, with the last
 // hit that was turned down, if their lists had `most` hits and none of them was kept; hits are set for the others.
-template <class AnyHit, class AnyRay, class Filter, class View>
+template <class AnyHit, class AnyRay, class Filter, class View, class Asked>
 void ask_in_lists(TurnedDown<AnyHit, AnyRay>& some, const RayLists<AnyHit>& lists, std::size_t most,
-                  Asking<Filter>& ask, const View& hits) {
-  std::vector<std::size_t> at(some.size()), open(some.size());
+                  Asking<Filter>& ask, const View& hits, const Asked& may_turn_down) {
+  std::vector<std::size_t> at(some.size()), open(some.size()), asked;
   std::vector<std::uint8_t> is_kept(some.size());
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto list = lists[k];
@@ -39,12 +39,16 @@ void ask_in_lists(TurnedDown<AnyHit, AnyRay>& some, const RayLists<AnyHit>& list
   for (;;) {
     std::erase_if(open, [&](std::size_t k) { return is_kept[k] != 0 || at[k] == lists.offsets[k + 1]; });
     if (open.empty()) break;
-    indices.clear(), found.clear();
-    for (const std::size_t k : open)
-      indices.push_back(some.indices[k]), found.push_back(lists.items[at[k]++]);
+    indices.clear(), found.clear(), asked.clear();
+    for (const std::size_t k : open) {
+      const AnyHit& hit = some.hits[k] = lists.items[at[k]++];
+      if (may_turn_down(hit))
+        asked.push_back(k), indices.push_back(some.indices[k]), found.push_back(hit);
+      else
+        is_kept[k] = 1;
+    }
     ask(indices, found);
-    for (std::size_t j = 0; j < open.size(); ++j)
-      some.hits[open[j]] = found[j], is_kept[open[j]] = ask.rejected[j] == 0 ? 1 : 0;
+    for (std::size_t j = 0; j < asked.size(); ++j) is_kept[asked[j]] = ask.rejected[j] == 0 ? 1 : 0;
   }
   const auto goes_on = [&](std::size_t k) { return is_kept[k] == 0 && lists[k].size() >= most; };
   for (std::size_t k = 0; k < some.size(); ++k)
@@ -82,13 +86,12 @@ class LengthOfLists {
   std::size_t rays_ = min_rays_together;
 };
 
-// As replace_turned_down(), of filters that may turn down each hit. list(rays, indices, most) are the first `most` hits
-// of rays, in order.
-template <class AnyHit, class Source, class Filter, class List>
+// As replace_turned_down(). list(rays, indices, most) are the first `most` hits of rays, in order.
+template <class AnyHit, class Source, class Filter, class Asked, class List>
 void replace_from_lists(const Source& rays, const HitRecords<AnyHit>& hits, const Filter& filter,
-                        bool has_streams, const List& list) {
+                        const Asked& may_turn_down, bool has_streams, const List& list) {
   Asking<Filter> ask{filter};
-  const auto all = turned_down_of<AnyHit>(rays, hits, ask, EveryHit());
+  const auto all = turned_down_of<AnyHit>(rays, hits, ask, may_turn_down);
   LengthOfLists length(rays.size(), all.size(), has_streams);
   for (std::size_t first = 0, count; first < all.size(); first += count) {
     count = std::min(length.rays(), all.size() - first);
@@ -96,7 +99,7 @@ void replace_from_lists(const Source& rays, const HitRecords<AnyHit>& hits, cons
     for (std::uint32_t most = length.of(count); some.size() > 0; most = most > ~0u / 8 ? ~0u : 8 * most) {
       const RayLists<AnyHit> lists = list(some.rays, some.indices, most);
       if (some.size() == count) length.learn(count, lists.items.size());
-      ask_in_lists(some, lists, most, ask, hits);
+      ask_in_lists(some, lists, most, ask, hits, may_turn_down);
     }
   }
 }

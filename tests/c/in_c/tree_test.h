@@ -128,6 +128,7 @@ void TEST_TREES(void) {
   test_refused_rays(tree);
   test_refused_bounds(tree);
   test_functions_of_rays(tree);
+  test_masks(tree);
   test_prepared_calls(tree);
   test_refused_calls(tree);
   test_progress_of_points(tree);

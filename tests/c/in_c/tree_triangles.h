@@ -56,3 +56,31 @@ static void test_refused_calls(const TREE* tree) {
   REFUSED(CALL(calls_closest)(NULL, rays, &hit), "calls");
   REFUSED(CALL(calls_occluded)(NULL, rays, &occluded), "calls");
 }
+
+static void test_masks(const TREE* tree) {
+  // The floor, two walls, and the roof, which has no word.
+  static const uint32_t words[3] = {1, 2, 4};
+  raylanes_ray_options options = ray_options();
+  struct reject floor = {0, 0, 0};
+  RECORD(hit) hits[3], hit;
+  raylanes_lists* lists = NULL;
+  uint8_t occluded = 7;
+  options.masks = words, options.mask_count = 3, options.mask = 6;
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, &options));
+  EXPECT(hits[0].t == 1.5 && hits[0].primitive == 3 && isinf(hits[1].t) && isinf(hits[2].t));
+  GOOD(CALL(occluded1)(tree, rays + 2, &occluded, &options));
+  EXPECT(occluded == 0);
+  GOOD(CALL(crossings)(tree, rays, 3, 0, &lists, &options));
+  EXPECT(raylanes_lists_offsets(lists)[1] == 1);
+  raylanes_lists_destroy(lists), lists = NULL;
+  options.mask = 7, options.filter_mask = 6, options.filter = reject_hits, options.filter_context = &floor;
+  GOOD(CALL(closest1)(tree, rays + 2, &hit, &options));
+  EXPECT(hit.primitive == 0 && floor.calls == 0);
+  GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, &options));
+  EXPECT(hits[0].primitive == 3 && hits[2].primitive == 0 && floor.calls > 0);
+  options.filter_mask = 1;
+  GOOD(CALL(closest1)(tree, rays + 2, &hit, &options));
+  EXPECT(isinf(hit.t));
+  options.masks = NULL;
+  REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), "masks");
+}

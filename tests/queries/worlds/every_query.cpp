@@ -278,6 +278,50 @@ TYPED_TEST(EveryQuery, of_shadows_and_filters) {
   }
 }
 
+// A filter that is asked about some triangles alone is that filter with an answer for the others.
+TYPED_TEST(EveryQuery, asks_filters_about_some_triangles) {
+  using T = TypeParam;
+  const World<T> world = std::move(worlds<T>(this->rays(180))[0]);
+  const std::vector<std::uint32_t> masks = some_masks(world.mesh.triangles.size());
+  constexpr std::uint32_t asking = 2;
+  const auto is_asked = [&](const HitOf<T>& hit) {
+    return hit.primitive >= masks.size() || (masks[hit.primitive] & asking) != 0;
+  };
+  const Expected<T> expected(world.mesh, world.rays, Facing::any, {}, masks);
+  std::size_t let_by = 0;
+  each_tree(world.mesh, [&](const auto& tree, const Path* path) {
+    TraceOptionsOf<T> options{.path = path};
+    options.mask = seeing, options.filter_mask = asking, options.masks = masks;
+    const auto reject_asked = [&](std::span<const std::size_t>, std::span<const HitOf<T>> hits,
+                                  std::span<std::uint8_t> rejected) {
+      for (std::size_t k = 0; k < hits.size(); ++k) {
+        EXPECT_TRUE(is_asked(hits[k]));
+        rejected[k] = 1;
+      }
+    };
+    const auto rejects = [&](const HitOf<T>& hit) {
+      EXPECT_TRUE(is_asked(hit));
+      return true;
+    };
+    std::vector<HitOf<T>> hits(world.rays.size());
+    std::vector<std::uint8_t> occluded(world.rays.size());
+    tree.closest(world.rays, hits, reject_asked, options);
+    tree.occluded(world.rays, occluded, reject_asked, options);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      HitOf<T> wanted;
+      for (const HitOf<T>& hit : expected.hits[i])
+        if (!wanted && !is_asked(hit)) wanted = hit;
+      let_by += wanted && !same_bytes(wanted, expected.nearest(i)) ? 1 : 0;
+      ASSERT_TRUE(same_bytes(wanted, hits[i])) << "ray " << i;
+      ASSERT_EQ(occluded[i], wanted ? 1 : 0) << "ray " << i;
+      if (i % 3 != 0) continue;
+      EXPECT_TRUE(same_bytes(tree.closest(world.rays[i], rejects, options), wanted)) << "ray " << i;
+      EXPECT_EQ(tree.occluded(world.rays[i], rejects, options), static_cast<bool>(wanted)) << "ray " << i;
+    }
+  });
+  EXPECT_GT(let_by, 0u);
+}
+
 TYPED_TEST(EveryQuery, takes_filters_in_every_call) {
   using T = TypeParam;
   const World<T> world = std::move(worlds<T>(this->rays(300))[0]);
