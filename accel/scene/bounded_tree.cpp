@@ -48,7 +48,22 @@ struct UserGeometry : Geometry {
   Box bounds() const override { return boxes().bounds; }
   float slack() const override { return boxes().slack; }
   void trace(const GeometryQuery& query, const GeometryBatch& batch) const override {
+    if (batch.asked != nullptr) return trace_asked(query, batch);
     trace_boxes(boxes(), query.kernels, test, batch);
+  }
+  // One ray whose caller rejects hits: those after them are looked for again.
+  void trace_asked(const GeometryQuery& query, const GeometryBatch& batch) const {
+    Hit hit, last;
+    GeometryBatch next = batch;
+    next.hits = &hit, next.occluded = nullptr, next.asked = nullptr;
+    do {
+      if (hit) last = hit, next.after = &last;
+      trace_boxes(boxes(), query.kernels, test, next);
+    } while (hit && batch.asked->rejects(batch.asked->function, hit));
+    if (batch.hits != nullptr)
+      *batch.hits = hit;
+    else
+      *batch.occluded = hit ? 1 : 0;
   }
   GeometryRecord record(std::size_t number, std::vector<Sphere>&) const override {
     throw std::invalid_argument("scene: geometry " + std::to_string(number) +

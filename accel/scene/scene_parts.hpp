@@ -138,6 +138,7 @@ struct SceneBatch {
   std::uint8_t* occluded;
   detail::RayNumbers numbers = {};  // of the rays in the caller's batch
   const SceneHit* after = nullptr;  // not null: the first hits after these are looked for; without geometries
+  const detail::Rejection<SceneHit>* rejection = nullptr;  // not null: of one ray whose caller rejects hits
 };
 struct SceneQuery : GeometryQuery {
   const SceneParts& scene;

@@ -37,6 +37,29 @@ constexpr std::size_t min_packets = 4096;
   }
 }
 
+// A search in one tree for a ray whose caller rejects hits of the scene.
+class AskedInTree {
+ public:
+  AskedInTree(const detail::Rejection<SceneHit>& rejection, const TriangleOwners& owners, Facing facing,
+              const GeometryBatch& ray)
+      : rejection_(rejection),
+        owners_(owners),
+        asked{rejects, this, facing, ray.skip != nullptr ? *ray.skip : no_primitive, ray.after} {}
+  AskedInTree(const AskedInTree&) = delete;
+  AskedInTree& operator=(const AskedInTree&) = delete;
+
+ private:
+  static bool rejects(void* search, const Hit& hit) {
+    const auto& [rejection, owners, asked] = *static_cast<const AskedInTree*>(search);
+    return rejection.rejects(rejection.function, owners.spread(hit));
+  }
+  const detail::Rejection<SceneHit>& rejection_;
+  const TriangleOwners& owners_;
+
+ public:
+  const AskedOf<float> asked;
+};
+
 class SceneTracer {
  public:
   SceneTracer(const SceneQuery& query, const SceneBatch& batch) : query_(query), batch_(batch) {}
@@ -139,7 +162,8 @@ class SceneTracer {
   bool skips() const { return query_.skip.first != nullptr; }
   bool has_only_a_mask() const {
     return query_.test == TriangleTest::exact && query_.choice.counters == nullptr &&
-           query_.choice.facing == Facing::any && batch_.after == nullptr && !skips();
+           query_.choice.facing == Facing::any && batch_.after == nullptr && batch_.rejection == nullptr &&
+           !skips();
   }
 
   // Rays in the space of an instance.
@@ -150,8 +174,13 @@ class SceneTracer {
     return batch;
   }
   // The hits of a geometry, whose triangles may have masks.
-  void trace(const Geometry& geometry, std::uint32_t number, GeometryBatch& part) const {
-    part.masks = query_.scene.masks_of(number, query_.mask);
+  void trace(const Geometry& geometry, const MemberNumbers& numbers, GeometryBatch& part) const {
+    part.masks = query_.scene.masks_of(numbers.members[0].geometry, query_.mask);
+    if (batch_.rejection != nullptr) {
+      const AskedInTree search(*batch_.rejection, numbers.owners, query_.choice.facing, part);
+      part.asked = &search.asked;
+      return geometry.trace(query_, part);
+    }
     if (part.masks.see_all()) return geometry.trace(query_, part);
     GeometryQuery query = query_;
     query.choice = query_.of_words;
@@ -192,7 +221,7 @@ class SceneTracer {
     auto* const places = reinterpret_cast<std::byte*>(batch_.hits);
     if (places != nullptr)
       part.hits = reinterpret_cast<Hit*>(places + batch_.size * (sizeof(SceneHit) - sizeof(Hit)));
-    trace(geometry, numbers.members[0].geometry, part);
+    trace(geometry, numbers, part);
     if (places != nullptr) spread(part.hits, batch_.size, numbers.owners, batch_.hits);
   }
   void trace_only(std::uint32_t number) const {
@@ -278,7 +307,7 @@ class SceneTracer {
     else
       part.occluded = scratch.take<std::uint8_t>(count);
     set_options(part, owners, rays, scratch);
-    trace(geometry, owners.members[0].geometry, part);
+    trace(geometry, owners, part);
     if (batch_.hits != nullptr)
       keep_hits(owners.owners, leaf, part);
     else

@@ -89,7 +89,10 @@ void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, 
     const Ray& ray = batch.rays[i];
     const SphereQuery asked{batch.tmax != nullptr ? batch.tmax[i] : ray.tmax,
                             batch.skip != nullptr ? batch.skip[i] : no_primitive,
-                            batch.after != nullptr ? batch.after + i : nullptr, batch.counters};
+                            batch.after != nullptr ? batch.after + i : nullptr,
+                            batch.asked != nullptr ? batch.asked->rejects : nullptr,
+                            batch.asked != nullptr ? batch.asked->function : nullptr,
+                            batch.counters};
     if (batch.hits != nullptr)
       batch.hits[i] = row.closest_sphere(tree, leaves, ray, asked);
     else
@@ -198,7 +201,7 @@ class RayDoor<SphereTree> {
   static constexpr const char* name = "sphere tree";
 
   explicit RayDoor(const SphereTree& tree)
-      : tree_(tree), spheres_(TreeAccess::arrays(tree) != nullptr ? *TreeAccess::arrays(tree) : no_spheres) {}
+      : spheres_(TreeAccess::arrays(tree) != nullptr ? *TreeAccess::arrays(tree) : no_spheres) {}
 
   Hit closest(const Ray& ray) const {
     return is_quick() ? kernels({}, 0, true).closest(ray, 0) : closest_by(ray, {});
@@ -239,17 +242,35 @@ class RayDoor<SphereTree> {
   static NoLists lists(const VisitOptions&) { return {}; }
   Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
                    const VisitOptions& options) const {
-    return first_kept(rejection, options, [&](const VisitOptions& next) { return tree_.closest(ray, next); });
+    Hit hit;
+    ask(ray, rejection, options, &hit, nullptr);
+    return hit;
   }
   bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const VisitOptions& options) const {
-    return static_cast<bool>(closest_kept(ray, rejection, options));
+    std::uint8_t is_occluded = 0;
+    ask(ray, rejection, options, nullptr, &is_occluded);
+    return is_occluded != 0;
   }
 
  private:
   // Whether a call with one ray may go straight to the kernel: there are spheres, and nothing traps.
   bool is_quick() const { return spheres_.boxes.root != empty_reference && !QuietFloats::are_wanted(); }
 
-  const SphereTree& tree_;
+  void ask(const Ray& ray, const detail::Rejection<Hit>& rejection, const VisitOptions& options, Hit* hit,
+           std::uint8_t* occluded) const {
+    const std::uint32_t skipped = skip_of_one(name, options);
+    require_after(name, options.after, 1), require_threads(name, options.threads);
+    const KernelTable& kernels = kernels_of(checked_path(options.path));
+    if (options.counters != nullptr) require_counters(name, kernels.has_counters());
+    const Hit after = options.after.first != nullptr ? options.after[0] : Hit();
+    const AskedOf<float> asked{rejection.rejects, rejection.function};
+    const QuietFloats quiet;
+    GeometryBatch batch{&ray, 1, hit, occluded, nullptr, options.counters};
+    batch.skip = &skipped, batch.asked = &asked;
+    if (options.after.first != nullptr) batch.after = &after;
+    trace_spheres(spheres_, kernels, batch);
+  }
+
   const SphereTreeArrays& spheres_;
 };
 template class RayQueries<SphereTree>;

@@ -18,6 +18,14 @@ struct TriangleGeometry : Geometry {
   void trace(const GeometryQuery& query, const GeometryBatch& rays) const override {
     TreeView view = TreeAccess::traced(*triangles()).view;
     view.masks = rays.masks;
+    if (rays.asked != nullptr) {
+      const KeptRow<TreeView, float>& kept = query.kernels.queries.plain.kept;
+      if (rays.hits != nullptr)
+        *rays.hits = kept.closest(view, *rays.rays, *rays.asked);
+      else
+        *rays.occluded = kept.any(view, *rays.rays, *rays.asked) ? 1 : 0;
+      return;
+    }
     TraceBatch batch;
     batch.rays = rays.rays, batch.size = rays.size;
     batch.hits = rays.hits, batch.occluded = rays.occluded;

@@ -3,6 +3,7 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/table/kernel_table.hpp"
+#include "../../dispatch/table/queries.hpp"
 #include "../batch/batch.hpp"
 #include "../batch/checked_call.hpp"
 #include "bounded_tree_arrays.hpp"
@@ -28,7 +29,9 @@ struct GeometryBatch {
   std::uint32_t instance = no_part;     // see LeafVisit
   const Hit* after = nullptr;           // not null: the first hits after these are looked for
   const std::uint32_t* skip = nullptr;  // not null: for each ray the primitive that is not there for it
-  TriangleMasks masks = {};             // by rows with a rule
+  const AskedOf<float>* asked =
+      nullptr;               // not null: of one ray whose caller rejects hits; it says all the rest
+  TriangleMasks masks = {};  // by rows with a rule
 };
 
 // On this thread. All answers are set.

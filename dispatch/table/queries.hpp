@@ -87,6 +87,8 @@ struct SphereQuery {
   float end;
   std::uint32_t skipped = no_primitive;
   const Hit* after = nullptr;
+  bool (*rejects)(void* function, const Hit& hit) = nullptr;  // as in AskedOf
+  void* function = nullptr;
   TraceCounters* counters = nullptr;  // of the counted row
 };
 

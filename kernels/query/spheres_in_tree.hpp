@@ -13,6 +13,11 @@ struct NearestSphere : NearestFirst {
   float tmax;
   Hit best = {};
   float box_tmax() const { return tmax; }
+  void end_at(const Hit& hit) {
+    best = hit;
+    const float end = end_after(hit.t);
+    tmax = end < tmax ? end : tmax;
+  }
 };
 struct AnySphere : AsStored {
   static constexpr bool only_decides = true;
@@ -70,15 +75,40 @@ class SpheresOfRay {
     auto near = d.near >= V(tmin_), far = d.far >= V(tmin_);
     if (asked_.skipped != no_primitive || asked_.after != nullptr) [[unlikely]]
       admit(leaf.block + k, size, d, near, far);
+    const std::uint32_t* const primitives = spheres_.primitives + leaf.block + k;
+    if (asked_.rejects != nullptr) [[unlikely]]
+      return ask(d, bits(d.hit & near & (d.near <= V(tmax_))) & occupied,
+                 bits(d.hit & far & (d.far <= V(tmax_))) & occupied, primitives, query);
     const V t = select(near, d.near, d.far);
     const auto hit = d.hit & (near | far) & (t <= V(tmax_));
     if constexpr (Query::only_decides) {
       return query.found = (bits(hit) & occupied) != 0;
     } else {
       const std::uint32_t hits = bits(hit & (t <= V(query.best.t))) & occupied;
-      if (hits != 0) keep(t, hits, spheres_.primitives + leaf.block + k, query);
+      if (hits != 0) keep(t, hits, primitives, query);
       return false;
     }
+  }
+  // Asks about the hits of some lanes that would be the best so far.
+  template <class Query>
+  [[gnu::noinline]] bool ask(const SphereDistancesOf<V>& d, std::uint32_t nears, std::uint32_t fars,
+                             const std::uint32_t* primitives, Query& query) const {
+    float t[2][node_lanes];
+    d.near.store(t[0]), d.far.store(t[1]);
+    for (int lane = 0; lane < node_lanes; ++lane)
+      for (int side = 0; side < 2; ++side) {
+        if (((side == 0 ? nears : fars) >> lane & 1u) == 0) continue;
+        const Hit hit{t[side][lane], 0, 0, primitives[lane]};
+        if constexpr (!Query::only_decides)
+          if (!is_better(hit.t, hit.primitive, query.best)) continue;
+        if (asked_.rejects(asked_.function, hit)) continue;
+        if constexpr (Query::only_decides)
+          return query.found = true;
+        else
+          query.end_at(hit);
+        break;
+      }
+    return false;
   }
   static void keep(V t, std::uint32_t hits, const std::uint32_t* primitives, NearestSphere& query) {
     float of_lane[node_lanes];
@@ -86,10 +116,8 @@ class SpheresOfRay {
     for (; hits != 0; hits &= hits - 1) {
       const int lane = std::countr_zero(hits);
       if (is_better(of_lane[lane], primitives[lane], query.best))
-        query.best = {of_lane[lane], 0, 0, primitives[lane]};
+        query.end_at({of_lane[lane], 0, 0, primitives[lane]});
     }
-    const float end = end_after(query.best.t);
-    query.tmax = end < query.tmax ? end : query.tmax;
   }
   // Leaves the sides that count.
   [[gnu::noinline]] void admit(std::uint32_t first, std::uint32_t size, const SphereDistancesOf<V>& d,

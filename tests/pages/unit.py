@@ -36,7 +36,7 @@ def unit_of(root):
     includes, bodies, runs = {'#include "given.hpp"': None}, [], []
     texts = [(block.name, block.line + 1, block.text, root) for block in all_blocks(root) if block.language == 'cpp']
     texts += [(str(file.relative_to(root)), 1, file.read_text(encoding='utf-8'), file.parent)
-              for file in sorted((root / 'docs/examples').glob('*.cpp'))]
+              for file in sorted((root / 'docs/examples').rglob('*.cpp'))]
     for number, (name, line, text, folder) in enumerate(texts):
         text = without_includes(text, includes, folder)
         where = f'#line {line} "{root / name.split(":")[0]}"\n'
@@ -55,7 +55,7 @@ def read_files(root):
     """What the unit is made of; the folders tell of files that come."""
     folders = [f for f in [root / 'docs', *(root / 'docs').rglob('*')] if f.is_dir()]
     scripts = [pathlib.Path(__file__), pathlib.Path(__file__).with_name('page.py')]
-    return [*(root / page for page in pages_of(root)), *folders, *scripts, *(root / 'docs/examples').glob('*pp')]
+    return [*(root / page for page in pages_of(root)), *folders, *scripts, *(root / 'docs/examples').rglob('*pp')]
 
 
 def main(source, output, dependencies):

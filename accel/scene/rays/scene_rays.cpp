@@ -185,7 +185,10 @@ class RayDoor<Scene> {
   KernelsOfScene kernels(const TraceOptions& options, std::size_t rays, bool are_default = false) const {
     return {parts_, options, rays, are_default};
   }
-  [[gnu::cold, gnu::noinline]] SceneHit closest_by(const Ray& ray, const TraceOptions& options) const {
+  // rejection: what the caller rejects; null: nothing.
+  [[gnu::cold, gnu::noinline]] SceneHit closest_by(
+      const Ray& ray, const TraceOptions& options,
+      const detail::Rejection<SceneHit>* rejection = nullptr) const {
     require_skip(name, options.skip, 1);
     require_after_in_scene(options, 1);
     const SceneQuery query = checked_query(parts_, options);
@@ -193,15 +196,16 @@ class RayDoor<Scene> {
     const bool has_after = options.after.first != nullptr;
     const SceneHit last = has_after ? hit_of_after(options.after, 0) : SceneHit();
     SceneHit hit;
-    trace_scene(query, {&ray, 1, &hit, nullptr, {}, has_after ? &last : nullptr});
+    trace_scene(query, {&ray, 1, &hit, nullptr, {}, has_after ? &last : nullptr, rejection});
     return hit;
   }
-  [[gnu::cold, gnu::noinline]] bool any_by(const Ray& ray, const TraceOptions& options) const {
+  [[gnu::cold, gnu::noinline]] bool any_by(const Ray& ray, const TraceOptions& options,
+                                           const detail::Rejection<SceneHit>* rejection = nullptr) const {
     require_skip(name, options.skip, 1);
     const SceneQuery query = checked_query(parts_, options);
     const QuietFloats quiet;
     std::uint8_t is_occluded = 0;
-    trace_scene(query, {&ray, 1, nullptr, &is_occluded});
+    trace_scene(query, {&ray, 1, nullptr, &is_occluded, {}, nullptr, rejection});
     return is_occluded != 0;
   }
   void trace(RaySource rays, const SceneHitView& hits, const TraceOptions& options) const {
@@ -227,6 +231,7 @@ class RayDoor<Scene> {
     require_exact_in_scene(options);
     if (const KeptInCommon call(parts_, rejection, options); call.tree != nullptr)
       return call.owners().spread(call.row().closest(*call.tree->view, ray, call.asked));
+    if (options.counters == nullptr) return closest_by(ray, options, &rejection);
     return first_kept(rejection, options,
                       [&](const TraceOptions& next) { return scene_.closest(ray, next); });
   }
@@ -235,6 +240,7 @@ class RayDoor<Scene> {
     require_exact_in_scene(options);
     if (const KeptInCommon call(parts_, rejection, options); call.tree != nullptr)
       return call.row().any(*call.tree->view, ray, call.asked);
+    if (options.counters == nullptr) return any_by(ray, options, &rejection);
     return static_cast<bool>(closest_kept(ray, rejection, options));
   }
 

@@ -1,5 +1,5 @@
 // A structure of one's own: spheres in a grid of tiles. One call asks the boxes of all tiles, one each tile met.
-#include "common.hpp"
+#include "../common.hpp"
 using namespace example;
 constexpr std::size_t side = 16, each = 16;  // tiles along x and y, and spheres in one
 constexpr float radius = 0.03f;

@@ -2,7 +2,7 @@
 #include <bit>
 #include <numeric>
 
-#include "common.hpp"
+#include "../common.hpp"
 using namespace example;
 struct alignas(64) Node {
   float lo[3][8], hi[3][8];
