@@ -242,6 +242,8 @@ TEST(ScenesOfDoubles, of_all_sizes) {
     parts.scene.closest(rays, before);
     for (const TransformD& never :
          {TransformD{{{size, size, 0, 0}, {size, size, 0, 0}, {0, 0, size, 0}}}, TransformD{{{nan}}},
+          // a sheet that rays would hit: too thin for its size
+          TransformD{{{size, size, 0, 0}, {size, size * (1 + 0x1p-50), 0, 0}, {0, 0, size, 0}}},
           TransformD{{{size, 0, 0, HUGE_VAL}, {0, size, 0, 0}, {0, 0, size, 0}}}, TransformD{{{}, {}, {}}}})
       parts.scene.place(0, never);
     parts.scene.update();
