@@ -88,15 +88,17 @@ void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, 
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Ray& ray = batch.rays[i];
     const SphereQuery asked{batch.tmax != nullptr ? batch.tmax[i] : ray.tmax,
+                            batch.hits == nullptr,
                             batch.skip != nullptr ? batch.skip[i] : no_primitive,
                             batch.after != nullptr ? batch.after + i : nullptr,
                             batch.asked != nullptr ? batch.asked->rejects : nullptr,
                             batch.asked != nullptr ? batch.asked->function : nullptr,
                             batch.counters};
+    const Hit hit = row.closest_sphere(tree, leaves, ray, asked);
     if (batch.hits != nullptr)
-      batch.hits[i] = row.closest_sphere(tree, leaves, ray, asked);
+      batch.hits[i] = hit;
     else
-      batch.occluded[i] = row.any_sphere(tree, leaves, ray, asked) ? 1 : 0;
+      batch.occluded[i] = hit ? 1 : 0;
   }
 }
 
@@ -178,16 +180,15 @@ class KernelsOfSpheres {
   bool takes(const FewRays<Ray, Answer>&) const {
     return true;
   }
-  Hit closest(const Ray& ray, std::size_t i) const {
-    return row_->closest_sphere(spheres_->boxes.view(), spheres_->leaves(), ray,
-                                {ray.tmax, skipped_of(options_, i)});
-  }
-  bool any(const Ray& ray, std::size_t i) const {
-    return row_->any_sphere(spheres_->boxes.view(), spheres_->leaves(), ray,
-                            {ray.tmax, skipped_of(options_, i)});
-  }
+  Hit closest(const Ray& ray, std::size_t i) const { return first(ray, i, false); }
+  bool any(const Ray& ray, std::size_t i) const { return static_cast<bool>(first(ray, i, true)); }
 
  private:
+  Hit first(const Ray& ray, std::size_t i, bool any) const {
+    return row_->closest_sphere(spheres_->boxes.view(), spheres_->leaves(), ray,
+                                {ray.tmax, any, skipped_of(options_, i)});
+  }
+
   const SphereTreeArrays* spheres_;
   const VisitOptions& options_;
   const QueryKernels* row_ = nullptr;

@@ -85,6 +85,7 @@ struct SphereLeaves {
 // that is farther from the begin of the segment; and if `after` is not null, only hits after it count.
 struct SphereQuery {
   float end;
+  bool any = false;  // whether any hit will do
   std::uint32_t skipped = no_primitive;
   const Hit* after = nullptr;
   bool (*rejects)(void* function, const Hit& hit) = nullptr;  // as in AskedOf
@@ -138,8 +139,6 @@ struct QueryKernels {
   // One ray among spheres; tree.origin_share is the slack of their test.
   Hit (*closest_sphere)(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
                         const SphereQuery& asked);
-  bool (*any_sphere)(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
-                     const SphereQuery& asked);
 };
 struct AllQueryKernels {
   QueryKernels plain, counted;  // counted: null where the build was asked for no counters

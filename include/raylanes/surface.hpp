@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 
 #include <raylanes/scene_d.hpp>
@@ -98,7 +99,8 @@ inline Float3 normal_in_scene(const Transform& transform, const Float3& normal) 
 }
 /// Returns the unit normal in a scene of doubles of a normal in the space of an instance; NaN also if a product of four
 /// numbers of the transform overflows.
-inline Double3 normal_in_scene(const TransformD& transform, const Double3& normal) {
+template <std::same_as<TransformD> AnyTransform>
+Double3 normal_in_scene(const AnyTransform& transform, const Double3& normal) {
   return detail::NormalMatrix(transform)(normal);
 }
 

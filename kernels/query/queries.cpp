@@ -23,7 +23,6 @@ constexpr QueryKernels kernels_with() {
   kernels.closest_after = hits_after<Counters>;
   kernels.visit = visit_boxes<Counters>;
   kernels.closest_sphere = closest_sphere<Counters>;
-  kernels.any_sphere = any_sphere<Counters>;
   return kernels;
 }
 

@@ -9,7 +9,8 @@
 namespace raylanes {
 namespace {
 
-struct NearestSphere : NearestFirst {
+// The nearest hit so far; the first one if any will do.
+struct SphereSearch : NearestFirst {
   float tmax;
   Hit best = {};
   float box_tmax() const { return tmax; }
@@ -18,12 +19,6 @@ struct NearestSphere : NearestFirst {
     const float end = end_after(hit.t);
     tmax = end < tmax ? end : tmax;
   }
-};
-struct AnySphere : AsStored {
-  static constexpr bool only_decides = true;
-  float tmax;
-  bool found = false;
-  float box_tmax() const { return tmax; }
 };
 
 class SpheresOfRay {
@@ -34,16 +29,14 @@ class SpheresOfRay {
   SpheresOfRay(const SphereLeaves& spheres, const Ray& ray, const SphereQuery& asked)
       : spheres_(spheres), ray_(scaled(ray)), asked_(asked), tmin_(ray.tmin), tmax_(finite_tmax(ray.tmax)) {}
 
-  template <class Query>
-  bool visit(TreeReference leaf, Query& query) const {
+  bool visit(TreeReference leaf, SphereSearch& search) const {
     const LeafReference range = leaf_of(leaf);
     for (std::uint32_t k = 0; k < range.size; k += node_lanes)
-      if (visit(range, k, query)) return true;
+      if (visit(range, k, search)) return true;
     return false;
   }
-  template <class Query>
-  bool visit_unusual(TreeReference leaf, Query& query) const {
-    return visit(leaf, query);
+  [[gnu::noinline]] bool visit_unusual(TreeReference leaf, SphereSearch& search) const {
+    return visit(leaf, search);
   }
 
  private:
@@ -64,8 +57,7 @@ class SpheresOfRay {
   }
 
   // The spheres of a leaf from number k on.
-  template <class Query>
-  bool visit(LeafReference leaf, std::uint32_t k, Query& query) const {
+  bool visit(LeafReference leaf, std::uint32_t k, SphereSearch& search) const {
     const float* const first = spheres_.numbers + std::size_t{4} * leaf.block + k;
     const V sphere[4] = {V::load(first), V::load(first + leaf.size), V::load(first + 2 * leaf.size),
                          V::load(first + 3 * leaf.size)};
@@ -78,46 +70,38 @@ class SpheresOfRay {
     const std::uint32_t* const primitives = spheres_.primitives + leaf.block + k;
     if (asked_.rejects != nullptr) [[unlikely]]
       return ask(d, bits(d.hit & near & (d.near <= V(tmax_))) & occupied,
-                 bits(d.hit & far & (d.far <= V(tmax_))) & occupied, primitives, query);
+                 bits(d.hit & far & (d.far <= V(tmax_))) & occupied, primitives, search);
     const V t = select(near, d.near, d.far);
-    const auto hit = d.hit & (near | far) & (t <= V(tmax_));
-    if constexpr (Query::only_decides) {
-      return query.found = (bits(hit) & occupied) != 0;
-    } else {
-      const std::uint32_t hits = bits(hit & (t <= V(query.best.t))) & occupied;
-      if (hits != 0) keep(t, hits, primitives, query);
-      return false;
+    const std::uint32_t hits =
+        bits(d.hit & (near | far) & (t <= V(tmax_)) & (t <= V(search.best.t))) & occupied;
+    if (hits == 0) return false;
+    keep(t, hits, primitives, search);
+    return asked_.any;
+  }
+  static void keep(V t, std::uint32_t hits, const std::uint32_t* primitives, SphereSearch& search) {
+    float of_lane[node_lanes];
+    t.store(of_lane);
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = std::countr_zero(hits);
+      if (is_better(of_lane[lane], primitives[lane], search.best))
+        search.end_at({of_lane[lane], 0, 0, primitives[lane]});
     }
   }
   // Asks about the hits of some lanes that would be the best so far.
-  template <class Query>
   [[gnu::noinline]] bool ask(const SphereDistancesOf<V>& d, std::uint32_t nears, std::uint32_t fars,
-                             const std::uint32_t* primitives, Query& query) const {
+                             const std::uint32_t* primitives, SphereSearch& search) const {
     float t[2][node_lanes];
     d.near.store(t[0]), d.far.store(t[1]);
     for (int lane = 0; lane < node_lanes; ++lane)
       for (int side = 0; side < 2; ++side) {
         if (((side == 0 ? nears : fars) >> lane & 1u) == 0) continue;
         const Hit hit{t[side][lane], 0, 0, primitives[lane]};
-        if constexpr (!Query::only_decides)
-          if (!is_better(hit.t, hit.primitive, query.best)) continue;
-        if (asked_.rejects(asked_.function, hit)) continue;
-        if constexpr (Query::only_decides)
-          return query.found = true;
-        else
-          query.end_at(hit);
+        if (!is_better(hit.t, hit.primitive, search.best) || asked_.rejects(asked_.function, hit)) continue;
+        search.end_at(hit);
+        if (asked_.any) return true;
         break;
       }
     return false;
-  }
-  static void keep(V t, std::uint32_t hits, const std::uint32_t* primitives, NearestSphere& query) {
-    float of_lane[node_lanes];
-    t.store(of_lane);
-    for (; hits != 0; hits &= hits - 1) {
-      const int lane = std::countr_zero(hits);
-      if (is_better(of_lane[lane], primitives[lane], query.best))
-        query.end_at({of_lane[lane], 0, 0, primitives[lane]});
-    }
   }
   // Leaves the sides that count.
   [[gnu::noinline]] void admit(std::uint32_t first, std::uint32_t size, const SphereDistancesOf<V>& d,
@@ -144,25 +128,14 @@ class SpheresOfRay {
   const float tmin_, tmax_;
 };
 
-template <class Counters, class Query>
-[[gnu::noinline, gnu::flatten]] void walk_spheres(const TreeView& tree, const SphereLeaves& spheres,
-                                                  const Ray& ray, const SphereQuery& asked, Query& query) {
+template <class Counters>
+[[gnu::flatten]] Hit closest_sphere(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
+                                    const SphereQuery& asked) {
+  SphereSearch search{{}, finite_tmax(asked.end)};
   Counters counters(asked);
-  walk_boxes(tree, ray, tree.origin_share * largest_of(ray.origin), SpheresOfRay(spheres, ray, asked), query,
+  walk_boxes(tree, ray, tree.origin_share * largest_of(ray.origin), SpheresOfRay(spheres, ray, asked), search,
              counters);
-}
-template <class Counters>
-Hit closest_sphere(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
-                   const SphereQuery& asked) {
-  NearestSphere query{{}, finite_tmax(asked.end)};
-  walk_spheres<Counters>(tree, spheres, ray, asked, query);
-  return query.best;
-}
-template <class Counters>
-bool any_sphere(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray, const SphereQuery& asked) {
-  AnySphere query{{}, finite_tmax(asked.end)};
-  walk_spheres<Counters>(tree, spheres, ray, asked, query);
-  return query.found;
+  return search.best;
 }
 
 }  // namespace

@@ -68,9 +68,8 @@ inline float visit_single(const TreeView& tree, const VisitBatch& batch, std::ui
   const Ray& ray = batch.rays[number];
   if (!is_valid(ray)) return tmax;
   Counters counters(batch);
-  const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds,
-                                                 tree.origin_share * largest_of(ray.origin) + tree.padding);
-  return visit_single(tree, batch, NodeTest<node_lanes>(slabs, ray.tmin), number, tmax, counters);
+  const float padding = tree.origin_share * largest_of(ray.origin) + tree.padding;
+  return visit_single(tree, batch, padded_boxes(tree, ray, padding), number, tmax, counters);
 }
 
 // As StreamLeaves. The memory in which other streams keep leaf triangles and hits has the indices of a leaf's rays and

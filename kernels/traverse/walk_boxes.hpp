@@ -13,6 +13,12 @@ inline float end_after(float t) {
                         : std::numeric_limits<float>::infinity();
 }
 
+// A ray against boxes that are padded by `padding` besides. Out of line: several walks of unusual rays begin with it.
+[[gnu::noinline, maybe_unused]] NodeTest<node_lanes> padded_boxes(const TreeView& tree, const Ray& ray,
+                                                                  float padding) {
+  return {PaddedSlabs::for_exact_hits(ray, tree.bounds, padding), ray.tmin};
+}
+
 // From the root, whose boxes are padded by `padding` besides. leaves.visit(leaf, query) is true where the search ends;
 // visit_unusual() is that for rays that FusedRay leaves out. In a tree of one leaf these look themselves whether the
 // ray is valid.
@@ -20,8 +26,7 @@ template <class Query, class Leaves, class Counters>
 [[gnu::noinline]] void walk_unusual_boxes(const TreeView& tree, const Ray& ray, float padding,
                                           const Leaves& leaves, Query& query, Counters& counters) {
   if (!is_valid(ray)) return;
-  const auto slabs = PaddedSlabs::for_exact_hits(ray, tree.bounds, padding);
-  walk_nodes(tree, NodeTest<node_lanes>(slabs, ray.tmin), query, counters, [&](TreeReference leaf) {
+  walk_nodes(tree, padded_boxes(tree, ray, padding), query, counters, [&](TreeReference leaf) {
     counters.leaf();
     return leaves.visit_unusual(leaf, query);
   });
