@@ -4,7 +4,7 @@
 #include <raylanes/raylanes.h>
 
 #include <raylanes/doubles.hpp>
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 
 #include "../standard.hpp"
 
@@ -38,4 +38,7 @@ struct raylanes_scene {
   std::shared_ptr<raylanes::Scene> object;
   // Tests of the scene, of what it is a copy of, and of geometries that were replaced.
   std::vector<std::shared_ptr<raylanes::c::OwnTest>> tests = {};
+};
+struct raylanes_scene_d {
+  std::shared_ptr<raylanes::SceneD> object;
 };

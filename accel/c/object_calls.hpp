@@ -1,21 +1,15 @@
-// The functions that trees and scenes share: files, and queries of rays. A file that includes this defines before, and
+// The functions that trees and scenes share: queries of rays. A file that includes this defines before, and
 // forgets after:
 //   RAYLANES_HANDLE        what C holds: raylanes_bvh
-//   RAYLANES_CALL(of_floats, of_doubles, of_scene)  a function, one of these
+//   RAYLANES_CALL(of_floats, of_doubles, of_scene, of_scene_d)  a function, one of these
 //   RAYLANES_RAY           a ray of C: raylanes_ray
 //   RAYLANES_HIT           a hit of C: raylanes_hit
 //   RAYLANES_NUMBERS       a namespace in raylanes::c with the types Number and Tree, and `kind` for messages
-#include <fstream>
-#include <istream>
-#include <ostream>
-
 #include <raylanes/numbers.hpp>
-#include <raylanes/stretches.hpp>
 
 #include "call.hpp"
 #include "handles.hpp"
 #include "options.hpp"
-#include "stream.hpp"
 
 namespace raylanes::c::RAYLANES_NUMBERS {
 namespace {
@@ -76,58 +70,14 @@ raylanes_lists* lists_of(RayLists<Item> lists) {
 
 extern "C" {
 
-void RAYLANES_CALL(raylanes_bvh_destroy, raylanes_bvhd_destroy,
-                   raylanes_scene_destroy)(RAYLANES_HANDLE* handle) {
+void RAYLANES_CALL(raylanes_bvh_destroy, raylanes_bvhd_destroy, raylanes_scene_destroy,
+                   raylanes_scene_d_destroy)(RAYLANES_HANDLE* handle) {
   delete handle;
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_save, raylanes_bvhd_save,
-                              raylanes_scene_save)(const RAYLANES_HANDLE* handle, void* buffer,
-                                                   std::size_t capacity, std::size_t* size) {
-  return status_of([&] {
-    require_pointer("size", size);
-    checked_stride("buffer", buffer, capacity, 1, 1);
-    BufferOutput output(buffer, capacity);
-    std::ostream stream(&output);
-    object_of(handle).save(stream);
-    *size = output.size();
-    if (*size > capacity) throw SmallBuffer{capacity, *size};
-  });
-}
-
-raylanes_status RAYLANES_CALL(raylanes_bvh_save_file, raylanes_bvhd_save_file,
-                              raylanes_scene_save_file)(const RAYLANES_HANDLE* handle, const char* file) {
-  return status_of([&] {
-    const Tree& saved = object_of(handle);
-    with_file<std::ofstream>(file, [&](std::ostream& stream) { saved.save(stream); });
-  });
-}
-
-raylanes_status RAYLANES_CALL(raylanes_bvh_load, raylanes_bvhd_load,
-                              raylanes_scene_load)(RAYLANES_HANDLE** handle, const void* bytes,
-                                                   std::size_t size) {
-  return status_of([&] {
-    make(kind, handle, [&] {
-      checked_stride("bytes", bytes, size, 1, 1);
-      BufferInput input(bytes, size);
-      std::istream stream(&input);
-      return handle_of(Tree::load(stream));
-    });
-  });
-}
-
-raylanes_status RAYLANES_CALL(raylanes_bvh_load_file, raylanes_bvhd_load_file,
-                              raylanes_scene_load_file)(RAYLANES_HANDLE** handle, const char* file) {
-  return status_of([&] {
-    make(kind, handle, [&] {
-      return with_file<std::ifstream>(file,
-                                      [](std::istream& stream) { return handle_of(Tree::load(stream)); });
-    });
-  });
-}
-
-raylanes_status RAYLANES_CALL(raylanes_bvh_bounds, raylanes_bvhd_bounds,
-                              raylanes_scene_bounds)(const RAYLANES_HANDLE* handle, Number* lo, Number* hi) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_bounds, raylanes_bvhd_bounds, raylanes_scene_bounds,
+                              raylanes_scene_d_bounds)(const RAYLANES_HANDLE* handle, Number* lo,
+                                                       Number* hi) {
   return status_of([&] {
     const auto box = object_of(handle).bounds();
     require_pointer("lo", lo);
@@ -137,11 +87,11 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_bounds, raylanes_bvhd_bounds,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_closest, raylanes_bvhd_closest,
-                              raylanes_scene_closest)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                      std::size_t n, std::size_t stride, void* hits,
-                                                      std::size_t hit_stride,
-                                                      const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest, raylanes_bvhd_closest, raylanes_scene_closest,
+                              raylanes_scene_d_closest)(const RAYLANES_HANDLE* handle, const void* rays,
+                                                        std::size_t n, std::size_t stride, void* hits,
+                                                        std::size_t hit_stride,
+                                                        const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const Rays from = rays_of(rays, n, stride);
@@ -152,11 +102,11 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_closest, raylanes_bvhd_closest,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_occluded, raylanes_bvhd_occluded,
-                              raylanes_scene_occluded)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                       std::size_t n, std::size_t stride,
-                                                       std::uint8_t* occluded,
-                                                       const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded, raylanes_bvhd_occluded, raylanes_scene_occluded,
+                              raylanes_scene_d_occluded)(const RAYLANES_HANDLE* handle, const void* rays,
+                                                         std::size_t n, std::size_t stride,
+                                                         std::uint8_t* occluded,
+                                                         const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const Rays from = rays_of(rays, n, stride);
@@ -167,10 +117,10 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_occluded, raylanes_bvhd_occluded,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_closest1, raylanes_bvhd_closest1,
-                              raylanes_scene_closest1)(const RAYLANES_HANDLE* handle, const RAYLANES_RAY* ray,
-                                                       RAYLANES_HIT* hit,
-                                                       const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_closest1, raylanes_bvhd_closest1, raylanes_scene_closest1,
+                              raylanes_scene_d_closest1)(const RAYLANES_HANDLE* handle,
+                                                         const RAYLANES_RAY* ray, RAYLANES_HIT* hit,
+                                                         const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const auto one = ray_of(ray);
@@ -183,10 +133,10 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_closest1, raylanes_bvhd_closest1,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_occluded1, raylanes_bvhd_occluded1,
-                              raylanes_scene_occluded1)(const RAYLANES_HANDLE* handle,
-                                                        const RAYLANES_RAY* ray, std::uint8_t* occluded,
-                                                        const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_occluded1, raylanes_bvhd_occluded1, raylanes_scene_occluded1,
+                              raylanes_scene_d_occluded1)(const RAYLANES_HANDLE* handle,
+                                                          const RAYLANES_RAY* ray, std::uint8_t* occluded,
+                                                          const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const auto one = ray_of(ray);
@@ -199,11 +149,9 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_occluded1, raylanes_bvhd_occluded1,
 }
 
 raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_from, raylanes_bvhd_occluded_from,
-                              raylanes_scene_occluded_from)(const RAYLANES_HANDLE* handle, const Number* from,
-                                                            const void* points, std::size_t n,
-                                                            std::size_t stride, Number start, Number end,
-                                                            std::uint8_t* occluded,
-                                                            const raylanes_ray_options* options) {
+                              raylanes_scene_occluded_from, raylanes_scene_d_occluded_from)(
+    const RAYLANES_HANDLE* handle, const Number* from, const void* points, std::size_t n, std::size_t stride,
+    Number start, Number end, std::uint8_t* occluded, const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const auto light = point_of("from", from);
@@ -217,11 +165,9 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_from, raylanes_bvhd_occluded
 }
 
 raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_towards, raylanes_bvhd_occluded_towards,
-                              raylanes_scene_occluded_towards)(const RAYLANES_HANDLE* handle,
-                                                               const Number* direction, const void* points,
-                                                               std::size_t n, std::size_t stride,
-                                                               std::uint8_t* occluded,
-                                                               const raylanes_ray_options* options) {
+                              raylanes_scene_occluded_towards, raylanes_scene_d_occluded_towards)(
+    const RAYLANES_HANDLE* handle, const Number* direction, const void* points, std::size_t n,
+    std::size_t stride, std::uint8_t* occluded, const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const auto sun = point_of("direction", direction);
@@ -234,11 +180,9 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_occluded_towards, raylanes_bvhd_occlu
 }
 
 raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing, raylanes_bvhd_closest_crossing,
-                              raylanes_scene_closest_crossing)(const RAYLANES_HANDLE* handle,
-                                                               const void* rays, std::size_t n,
-                                                               std::size_t stride, void* hits,
-                                                               std::size_t hit_stride,
-                                                               const raylanes_ray_options* options) {
+                              raylanes_scene_closest_crossing, raylanes_scene_d_closest_crossing)(
+    const RAYLANES_HANDLE* handle, const void* rays, std::size_t n, std::size_t stride, void* hits,
+    std::size_t hit_stride, const raylanes_ray_options* options) {
   return status_of([&] {
     object_of(handle).closest_crossing(rays_of(rays, n, stride), hits_of(hits, n, hit_stride),
                                        TraceBy(options, n).unfiltered());
@@ -246,9 +190,10 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing, raylanes_bvhd_close
 }
 
 raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing1, raylanes_bvhd_closest_crossing1,
-                              raylanes_scene_closest_crossing1)(const RAYLANES_HANDLE* handle,
-                                                                const RAYLANES_RAY* ray, RAYLANES_HIT* hit,
-                                                                const raylanes_ray_options* options) {
+                              raylanes_scene_closest_crossing1,
+                              raylanes_scene_d_closest_crossing1)(const RAYLANES_HANDLE* handle,
+                                                                  const RAYLANES_RAY* ray, RAYLANES_HIT* hit,
+                                                                  const raylanes_ray_options* options) {
   return status_of([&] {
     const Tree& asked = object_of(handle);
     const auto one = ray_of(ray);
@@ -257,11 +202,11 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_closest_crossing1, raylanes_bvhd_clos
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_all_hits, raylanes_bvhd_all_hits,
-                              raylanes_scene_all_hits)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                       std::size_t n, std::size_t stride,
-                                                       raylanes_lists** lists,
-                                                       const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_all_hits, raylanes_bvhd_all_hits, raylanes_scene_all_hits,
+                              raylanes_scene_d_all_hits)(const RAYLANES_HANDLE* handle, const void* rays,
+                                                         std::size_t n, std::size_t stride,
+                                                         raylanes_lists** lists,
+                                                         const raylanes_ray_options* options) {
   return status_of([&] {
     make("lists", lists, [&] {
       return lists_of(object_of(handle).all_hits(rays_of(rays, n, stride), ListBy(options, n).unfiltered()));
@@ -269,11 +214,11 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_all_hits, raylanes_bvhd_all_hits,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_crossings, raylanes_bvhd_crossings,
-                              raylanes_scene_crossings)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                        std::size_t n, std::size_t stride,
-                                                        raylanes_lists** lists,
-                                                        const raylanes_ray_options* options) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_crossings, raylanes_bvhd_crossings, raylanes_scene_crossings,
+                              raylanes_scene_d_crossings)(const RAYLANES_HANDLE* handle, const void* rays,
+                                                          std::size_t n, std::size_t stride,
+                                                          raylanes_lists** lists,
+                                                          const raylanes_ray_options* options) {
   return status_of([&] {
     make("lists", lists, [&] {
       return lists_of(object_of(handle).crossings(rays_of(rays, n, stride), ListBy(options, n).unfiltered()));
@@ -281,24 +226,10 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_crossings, raylanes_bvhd_crossings,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_stretches, raylanes_bvhd_stretches,
-                              raylanes_scene_stretches)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                        std::size_t n, std::size_t stride,
-                                                        raylanes_lists** lists,
-                                                        const raylanes_ray_options* options) {
-  return status_of([&] {
-    make("lists", lists, [&] {
-      return lists_of(
-          stretches(object_of(handle), rays_of(rays, n, stride), ListBy(options, n).unfiltered()));
-    });
-  });
-}
-
 raylanes_status RAYLANES_CALL(raylanes_bvh_count_crossings, raylanes_bvhd_count_crossings,
-                              raylanes_scene_count_crossings)(const RAYLANES_HANDLE* handle, const void* rays,
-                                                              std::size_t n, std::size_t stride,
-                                                              raylanes_crossing_count* counts,
-                                                              const raylanes_ray_options* options) {
+                              raylanes_scene_count_crossings, raylanes_scene_d_count_crossings)(
+    const RAYLANES_HANDLE* handle, const void* rays, std::size_t n, std::size_t stride,
+    raylanes_crossing_count* counts, const raylanes_ray_options* options) {
   return status_of([&] {
     object_of(handle).count_crossings(rays_of(rays, n, stride), span_of<CrossingCount>("counts", counts, n),
                                       ListBy(options, n).unfiltered());

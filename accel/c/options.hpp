@@ -36,7 +36,7 @@ std::span<const std::uint32_t> masks_of(const raylanes_ray_options& c);
 // Throws std::invalid_argument if there is a filter.
 void refuse_filter(const raylanes_ray_options& c);
 
-// From the primitive of a raylanes_scene_hit.
+// From the primitive of a raylanes_scene_hit, and of a raylanes_scene_hit_d.
 inline constexpr std::int32_t to_instance_of_hits =
     offsetof(raylanes_scene_hit, instance) - offsetof(raylanes_scene_hit, primitive);
 
@@ -100,7 +100,7 @@ class RayOptions {
   }
 
  private:
-  static constexpr bool is_in_scene = std::is_same_v<AnyHit, SceneHit>;
+  static constexpr bool is_in_scene = requires(const AnyHit& hit) { hit.instance; };
   // Scenes take hits that lie side by side.
   std::size_t skip_stride(std::size_t count) const {
     const bool are_hits = is_in_scene && c_.skip_stride == 0;

@@ -31,14 +31,16 @@ constexpr const char* kind = "tree";
 
 #define RAYLANES_HANDLE raylanes_bvh
 #define RAYLANES_CALLS raylanes_bvh_calls
-#define RAYLANES_CALL(of_floats, of_doubles, of_scene) of_floats
+#define RAYLANES_CALL(of_floats, of_doubles, of_scene, of_scene_d) of_floats
 #define RAYLANES_TREE_CALL(of_floats, of_doubles) of_floats
 #define RAYLANES_RAY raylanes_ray
 #define RAYLANES_HIT raylanes_hit
 #define RAYLANES_CLOSEST raylanes_closest_point
 #define RAYLANES_NUMBERS of_floats
 #include "object_calls.hpp"
+#include "object_files.hpp"
 #include "object_points.hpp"
+#include "object_stretches.hpp"
 #include "tree_calls.hpp"
 #undef RAYLANES_HANDLE
 #undef RAYLANES_CALLS
@@ -51,12 +53,14 @@ constexpr const char* kind = "tree";
 
 #define RAYLANES_HANDLE raylanes_bvhd
 #define RAYLANES_CALLS raylanes_bvhd_calls
-#define RAYLANES_CALL(of_floats, of_doubles, of_scene) of_doubles
+#define RAYLANES_CALL(of_floats, of_doubles, of_scene, of_scene_d) of_doubles
 #define RAYLANES_TREE_CALL(of_floats, of_doubles) of_doubles
 #define RAYLANES_RAY raylanes_rayd
 #define RAYLANES_HIT raylanes_hitd
 #define RAYLANES_CLOSEST raylanes_closest_pointd
 #define RAYLANES_NUMBERS of_doubles
 #include "object_calls.hpp"
+#include "object_files.hpp"
 #include "object_points.hpp"
+#include "object_stretches.hpp"
 #include "tree_calls.hpp"

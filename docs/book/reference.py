@@ -89,7 +89,7 @@ def names_of_headers():
 
 def names_of_compound(compound):
     scope, kind = compound.findtext('compoundname'), compound.get('kind')
-    if kind == 'file' and scope in ('raylanes.h', 'raylanes_scenes.h', 'raylanes_types.h'):
+    if kind == 'file' and scope in ('raylanes.h', 'raylanes_scenes.h', 'raylanes_scenes_d.h', 'raylanes_types.h'):
         kind = 'namespace'  # as it were
     elif kind not in ('class', 'struct', 'namespace', 'concept') or not scope.startswith('raylanes'):
         return

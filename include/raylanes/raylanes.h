@@ -317,4 +317,5 @@ RAYLANES_STATUS raylanes_reciprocald(const double* x, double* y, size_t n, int32
 #endif
 
 #include <raylanes/raylanes_scenes.h>
+#include <raylanes/raylanes_scenes_d.h>
 #endif

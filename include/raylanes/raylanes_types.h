@@ -50,6 +50,11 @@ typedef struct raylanes_scene_hit {
   uint32_t primitive;           ///< the index within the geometry
   uint32_t geometry, instance;  ///< of the scene
 } raylanes_scene_hit;
+/// A hit in a scene of doubles.
+typedef struct raylanes_scene_hit_d {
+  double t, u, v;
+  uint32_t primitive, geometry, instance, unused;
+} raylanes_scene_hit_d;
 
 /// A crossing of a ray and the surface.
 typedef struct raylanes_crossing {
@@ -71,6 +76,13 @@ typedef struct raylanes_scene_crossing {
   int32_t side;
   uint32_t geometry, instance;
 } raylanes_scene_crossing;
+/// A crossing of a ray of doubles and the surface of an instance.
+typedef struct raylanes_scene_crossing_d {
+  double t;
+  uint32_t primitive;
+  int32_t side;
+  uint32_t geometry, instance;
+} raylanes_scene_crossing_d;
 
 /// A stretch of a ray within solids, along which the winding number is one number other than 0.
 typedef struct raylanes_stretch {
@@ -128,8 +140,9 @@ typedef struct raylanes_scene_report {
 // Functions of the caller get the pointer that was given with them.
 
 /// A function that rejects hits of a batch. hits[k] is a hit of ray rays[k] of the call: a raylanes_hit, in trees of
-/// doubles a raylanes_hitd, in scenes a raylanes_scene_hit. Set rejected[k], which is 0, to 1 to trace the ray on after
-/// that hit. Return 0, or any other number to end the call with RAYLANES_CANCELLED.
+/// doubles a raylanes_hitd, in scenes a raylanes_scene_hit, in scenes of doubles a raylanes_scene_hit_d. Set
+/// rejected[k], which is 0, to 1 to trace the ray on after that hit. Return 0, or any other number to end the call with
+/// RAYLANES_CANCELLED.
 /// The calling thread calls it, with one hit of each of many rays. It sees the hits of a ray in order, each once, up to
 /// the one that it keeps. Calls with one ray ask about one hit, in any order, perhaps behind the result and more than
 /// once.
@@ -151,6 +164,11 @@ typedef struct raylanes_scene_closest_point {
   float point[3], u, v;
   uint32_t primitive, geometry, instance;  ///< as in raylanes_scene_hit
 } raylanes_scene_closest_point;
+/// The closest point of a scene of doubles, in its space.
+typedef struct raylanes_scene_closest_point_d {
+  double distance_squared, distance, point[3], u, v;
+  uint32_t primitive, geometry, instance, unused;
+} raylanes_scene_closest_point_d;
 
 /// An instance of one level of scenes within scenes, by the numbers of the scene at that level.
 typedef struct raylanes_instance_level {
@@ -237,7 +255,7 @@ typedef struct raylanes_ray_options {
   /// In scenes: instances whose mask has a bit in common with it are there; in trees it goes with `masks`. Default all
   /// bits.
   uint32_t mask;
-  /// In scenes: the bytes from the primitives of `skip` to their instances; default as in a raylanes_scene_hit.
+  /// In scenes: the bytes from the primitives of `skip` to their instances; default as in hits of scenes.
   int32_t skip_to_instance;
   raylanes_filter filter;  ///< of closest, closest1 and occluded…; others refuse it; default NULL
   void* filter_context;

@@ -9,6 +9,11 @@
 
 namespace raylanes::testing {
 
+template <class AnyHit>
+inline constexpr bool names_instance = requires(const AnyHit& hit) {
+  hit.instance;
+};
+
 class AnyArguments {
  public:
   explicit AnyArguments(Bytes& bytes) : bytes_(bytes) {}
@@ -72,7 +77,7 @@ class AnyArguments {
   // hits: what the option `after` may be. AnyHit: what the object finds.
   template <class AnyHit>
   const raylanes_ray_options* ray_options(std::size_t n, const HitRecords<AnyHit>& hits, bool takes_filter) {
-    constexpr bool is_in_scene = std::is_same_v<AnyHit, SceneHit>;
+    constexpr bool is_in_scene = names_instance<AnyHit>;
     rays_ = default_ray_options();
     rays_.threads = threads();
     rays_.facing = enumerator(3);
@@ -80,16 +85,18 @@ class AnyArguments {
     if (bytes_.chance(64)) rays_.active = mask();
     if (bytes_.chance(64)) {
       // In hits of scenes: options of an earlier version say neither how far these lie apart nor where instances do.
-      skip_.take(n, bytes_.below(max_gap));
-      std::vector<SceneHit> skipped(n);
-      for (SceneHit& each : skipped) {
+      using Skipped = std::conditional_t<is_in_scene, AnyHit, SceneHit>;
+      static Strided<Skipped, max_elements> skip;
+      skip.take(n, bytes_.below(max_gap));
+      std::vector<Skipped> skipped(n);
+      for (Skipped& each : skipped) {
         each.primitive = static_cast<std::uint32_t>(bytes_.below(48)) - 4;
         each.instance = static_cast<std::uint32_t>(bytes_.below(6));
       }
-      skip_.put(skipped);
+      skip.put(skipped);
       if (n > 0) {
-        rays_.skip = skip_.first + offsetof(SceneHit, primitive);
-        rays_.skip_stride = is_wrong() ? refused(1 + bytes_.below(3)) : skip_.stride;
+        rays_.skip = skip.first + offsetof(Skipped, primitive);
+        rays_.skip_stride = is_wrong() ? refused(1 + bytes_.below(3)) : skip.stride;
       }
       if (is_in_scene && n > 0 && is_wrong()) rays_.skip_to_instance = refused(0);
     }
@@ -114,8 +121,7 @@ class AnyArguments {
     Options options;
     options.path = path_named(rays_.path), options.threads = rays_.threads, options.active = rays_.active;
     options.facing = static_cast<Facing>(rays_.facing);
-    const std::size_t side_by_side =
-        std::is_same_v<AnyHit, SceneHit> ? sizeof(AnyHit) : sizeof(std::uint32_t);
+    const std::size_t side_by_side = names_instance<AnyHit> ? sizeof(AnyHit) : sizeof(std::uint32_t);
     if (rays_.skip != nullptr)
       options.skip = {rays_.skip, n, rays_.skip_stride == 0 ? side_by_side : rays_.skip_stride,
                       rays_.skip_to_instance};
@@ -218,7 +224,6 @@ class AnyArguments {
   raylanes_point_options points_;
   std::uint8_t mask_[(max_elements + 7) / 8];
   std::uint32_t words_[24];
-  static inline Strided<SceneHit, max_elements> skip_;
 };
 
 }  // namespace raylanes::testing

@@ -3,7 +3,7 @@
 
 #include <raylanes/raylanes.h>
 
-#include <raylanes/doubles.hpp>
+#include <raylanes/scene_d.hpp>
 
 #include "../fuzz/any_doubles.hpp"
 #include "../fuzz/any_mesh.hpp"
@@ -110,6 +110,49 @@ struct World<Scene> : World<float> {
         fail("another way to an instance");
     }
   }
+};
+
+// The mesh of doubles as a mesh and as a tree, in places of any bits.
+template <>
+struct World<SceneD> : World<double> {
+  struct Place {
+    std::uint32_t geometry, mask;
+    TransformD transform;
+  };
+  explicit World(Bytes& bytes) : World<double>(bytes) {
+    for (std::size_t n = bytes.below(5); n > 0; --n) {
+      const std::uint32_t mask = bytes.chance(128) ? ~0u : static_cast<std::uint32_t>(bytes.below(4));
+      Place place{static_cast<std::uint32_t>(bytes.below(2)), mask, {}};
+      for (auto& row : place.transform.row)
+        for (double& number : row)
+          if (bytes.chance(50)) number = bytes.chance(128) ? coordinates() : coordinates.difference();
+      places.push_back(place);
+    }
+  }
+  SceneD tree() const {
+    SceneD scene;
+    for (int i = 0; i < 2; ++i) scene.add(mesh.vertices, mesh.triangles);
+    for (const auto& [geometry, mask, transform] : places) scene.place(geometry, transform, mask);
+    scene.update();
+    return scene;
+  }
+  TreeOfC<SceneD> tree_of_c() const {
+    return made<TreeOfC<SceneD>>([&](auto** scene) {
+      const auto tree = c_tree_of<double>(mesh);
+      std::uint32_t part;
+      raylanes_scene_d_create(scene);
+      raylanes_scene_d_add_mesh(*scene, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
+                                mesh.triangles.size(), 0, nullptr, &part);
+      raylanes_scene_d_add_tree(*scene, tree.get(), &part);
+      for (const auto& [geometry, mask, transform] : places) {
+        raylanes_scene_d_place(*scene, geometry, transform.row[0], mask, &part);
+        if (raylanes_scene_d_move(*scene, part + 1, nullptr) != RAYLANES_INVALID_ARGUMENT)
+          fail("an instance that is not there");
+      }
+      raylanes_scene_d_update(*scene, 1);
+    });
+  }
+  std::vector<Place> places;
 };
 
 }  // namespace raylanes::testing

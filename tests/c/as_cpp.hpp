@@ -41,42 +41,61 @@ struct Input<double> {
   TreeOfC<double> c_tree = c_tree_of<double>(mesh);
 };
 // A mesh and a tree, each where it was made and elsewhere, turned, enlarged, in a mirror, with several masks.
-template <>
-struct Input<Scene> {
-  Mesh mesh = triangle_soup(200, 0.3f, 11), ball = ellipsoid(1, {0, 0, 0}, {1, 0.5f, 0.75f});
-  std::vector<Ray> rays = mixed_rays(mesh, count, 2, {0, 0, 0}, 12);
-  Scene cpp_tree;
-  TreeOfC<Scene> c_tree = made<TreeOfC<Scene>>([](auto** scene) { raylanes_scene_create(scene); });
+template <class Kind, class AnyMesh>
+struct SceneInput {
+  AnyMesh mesh, ball;
+  std::vector<RayOf<NumberOfKind<Kind>>> rays;
+  Kind cpp_tree;
+  TreeOfC<Kind> c_tree = made<TreeOfC<Kind>>([](auto** scene) { CallsOf<Kind>::create(scene); });
 
-  Input() {
-    const auto tree = c_tree_of<float>(ball);
-    Apart<Float3> vertices(mesh.vertices, 5);
+  SceneInput(AnyMesh of_mesh, AnyMesh of_ball, std::vector<RayOf<NumberOfKind<Kind>>> of_rays)
+      : mesh(std::move(of_mesh)), ball(std::move(of_ball)), rays(std::move(of_rays)) {
+    using C = CallsOf<Kind>;
+    using Number = typename C::Number;
+    using PlaceBy = typename C::PlaceBy;
+    const auto tree = c_tree_of<Number>(ball);
+    Apart<PointOf<Number>> vertices(mesh.vertices, 5);
     Apart<Index3> triangles(mesh.triangles, 3);
-    cpp_tree.add(mesh), cpp_tree.add(Bvh(ball));
+    cpp_tree.add(mesh.vertices, mesh.triangles);
+    cpp_tree.add(typename CallsOf<Number>::Tree(ball.vertices, ball.triangles));
     std::uint32_t geometry = 7, instance = 7;
-    EXPECT_EQ(raylanes_scene_add_mesh(c_tree.get(), vertices.data(), mesh.vertices.size(), vertices.stride(),
-                                      triangles.data(), mesh.triangles.size(), triangles.stride(), nullptr,
-                                      &geometry),
+    EXPECT_EQ(C::add_mesh(c_tree.get(), vertices.data(), mesh.vertices.size(), vertices.stride(),
+                          triangles.data(), mesh.triangles.size(), triangles.stride(), nullptr, &geometry),
               RAYLANES_OK);
     EXPECT_EQ(geometry, 0u);
-    EXPECT_EQ(raylanes_scene_add_tree(c_tree.get(), tree.get(), &geometry), RAYLANES_OK);
+    EXPECT_EQ(C::add_tree(c_tree.get(), tree.get(), &geometry), RAYLANES_OK);
     EXPECT_EQ(geometry, 1u);
-    const Transform transforms[] = {{},
-                                    {},
-                                    {{{0, -1, 0, 0.5f}, {1, 0, 0, 0.25f}, {0, 0, 1, -0.5f}}},
-                                    {{{-2, 0, 0.5f, 0}, {0, 1, 0, 1}, {0, 0, 0.5f, 0}}}};
+    const PlaceBy transforms[] = {{},
+                                  {},
+                                  {{{0, -1, 0, 0.5f}, {1, 0, 0, 0.25f}, {0, 0, 1, -0.5f}}},
+                                  {{{-2, 0, 0.5f, 0}, {0, 1, 0, 1}, {0, 0, 0.5f, 0}}}};
     for (std::uint32_t i = 0; i < 8; ++i) {
-      const Transform& transform = transforms[i % 4];
+      const PlaceBy& transform = transforms[i % 4];
       const std::uint32_t mask = i % 3 == 0 ? ~0u : i % 3;
       cpp_tree.place(i / 4, transform, mask);
-      EXPECT_EQ(
-          raylanes_scene_place(c_tree.get(), i / 4, i == 0 ? nullptr : transform.row[0], mask, &instance),
-          RAYLANES_OK);
+      EXPECT_EQ(C::place(c_tree.get(), i / 4, i == 0 ? nullptr : transform.row[0], mask, &instance),
+                RAYLANES_OK);
       EXPECT_EQ(instance, i);
     }
     cpp_tree.update();
-    EXPECT_EQ(raylanes_scene_update(c_tree.get(), 0), RAYLANES_OK);
+    EXPECT_EQ(C::update(c_tree.get(), 0), RAYLANES_OK);
   }
+};
+inline Mesh soup_in_scene() {
+  return triangle_soup(200, 0.3f, 11);
+}
+inline Mesh ball_in_scene() {
+  return ellipsoid(1, {0, 0, 0}, {1, 0.5f, 0.75f});
+}
+template <>
+struct Input<Scene> : SceneInput<Scene, Mesh> {
+  Input()
+      : SceneInput(soup_in_scene(), ball_in_scene(), mixed_rays(soup_in_scene(), count, 2, {0, 0, 0}, 12)) {}
+};
+template <>
+struct Input<SceneD> : SceneInput<SceneD, DoubleMesh> {
+  static DoubleMesh soup() { return moved(soup_in_scene(), 1, {0.1, 0, -0.1}); }
+  Input() : SceneInput(soup(), moved(ball_in_scene(), 1.1, {0, 0.2, 0}), aimed_rays(soup(), count, 12)) {}
 };
 
 template <class Kind>

@@ -5,22 +5,17 @@
 
 #include <memory>
 
-#include <raylanes/doubles.hpp>
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 
 namespace raylanes::testing {
 
-// The kind is float or double for trees, or Scene.
+// The kind is float or double for trees, or Scene or SceneD.
 template <class Kind>
 struct CallsOf;
 // The functions that trees and scenes share, by the beginning of their names.
 #define RAYLANES_SHARED_CALLS(of)                                   \
   using Handle = of;                                                \
   static constexpr auto destroy = of##_destroy;                     \
-  static constexpr auto save = of##_save;                           \
-  static constexpr auto save_file = of##_save_file;                 \
-  static constexpr auto load = of##_load;                           \
-  static constexpr auto load_file = of##_load_file;                 \
   static constexpr auto bounds = of##_bounds;                       \
   static constexpr auto closest = of##_closest;                     \
   static constexpr auto occluded = of##_occluded;                   \
@@ -33,11 +28,36 @@ struct CallsOf;
   static constexpr auto count_crossings = of##_count_crossings;     \
   static constexpr auto all_hits = of##_all_hits;                   \
   static constexpr auto crossings = of##_crossings;                 \
-  static constexpr auto stretches = of##_stretches;                 \
   static constexpr auto locate = of##_locate;                       \
   static constexpr auto closest_points = of##_closest_points;       \
   static constexpr auto signed_distances = of##_signed_distances;   \
   static constexpr auto winding_numbers = of##_winding_numbers
+// The functions that scenes of doubles lack: files, and stretches.
+#define RAYLANES_FILE_CALLS(of)                     \
+  static constexpr auto save = of##_save;           \
+  static constexpr auto save_file = of##_save_file; \
+  static constexpr auto load = of##_load;           \
+  static constexpr auto load_file = of##_load_file; \
+  static constexpr auto stretches = of##_stretches
+// The functions that scenes share.
+#define RAYLANES_SCENE_CALLS(of)                                \
+  static constexpr auto create = of##_create;                   \
+  static constexpr auto copy = of##_copy;                       \
+  static constexpr auto add_mesh = of##_add_mesh;               \
+  static constexpr auto add_tree = of##_add_tree;               \
+  static constexpr auto replace_tree = of##_replace_tree;       \
+  static constexpr auto place = of##_place;                     \
+  static constexpr auto move = of##_move;                       \
+  static constexpr auto set_mask = of##_set_mask;               \
+  static constexpr auto update = of##_update;                   \
+  static constexpr auto bytes = of##_bytes;                     \
+  static constexpr auto geometry_of = of##_geometry_of;         \
+  static constexpr auto transform_of = of##_transform_of;       \
+  static constexpr auto mask_of = of##_mask_of;                 \
+  static constexpr auto normals = of##_normals;                 \
+  static constexpr auto corners = of##_corners;                 \
+  static constexpr auto innermost_parts = of##_innermost_parts; \
+  static constexpr auto containing_parts = of##_containing_parts
 // Names of functions and types; for doubles they have a d.
 #define RAYLANES_CALLS_OF(AnyNumber, TreeOfNumber, d, D)                     \
   template <>                                                                \
@@ -52,6 +72,7 @@ struct CallsOf;
     using Corners = Triangle##D;                                             \
     using CHit = raylanes_hit##d;                                            \
     RAYLANES_SHARED_CALLS(raylanes_bvh##d);                                  \
+    RAYLANES_FILE_CALLS(raylanes_bvh##d);                                    \
     static constexpr auto create = raylanes_bvh##d##_create;                 \
     static constexpr auto refit = raylanes_bvh##d##_refit;                   \
     using Calls = raylanes_bvh##d##_calls;                                   \
@@ -73,10 +94,31 @@ struct CallsOf<Scene> {
   using Distances = SignedDistanceOptions;
   using CRay = raylanes_ray;
   using CHit = raylanes_scene_hit;
+  using PlaceBy = Transform;
+  using Corners = Triangle;
   RAYLANES_SHARED_CALLS(raylanes_scene);
+  RAYLANES_FILE_CALLS(raylanes_scene);
+  RAYLANES_SCENE_CALLS(raylanes_scene);
+};
+template <>
+struct CallsOf<SceneD> {
+  using Number = double;
+  using Tree = SceneD;
+  using Trace = TraceOptionsD;
+  using Closest = ClosestPointOptionsD;
+  using ClosestPoint = SceneClosestPointD;
+  using Distances = SignedDistanceOptionsD;
+  using CRay = raylanes_rayd;
+  using CHit = raylanes_scene_hit_d;
+  using PlaceBy = TransformD;
+  using Corners = TriangleD;
+  RAYLANES_SHARED_CALLS(raylanes_scene_d);
+  RAYLANES_SCENE_CALLS(raylanes_scene_d);
 };
 #undef RAYLANES_CALLS_OF
 #undef RAYLANES_SHARED_CALLS
+#undef RAYLANES_FILE_CALLS
+#undef RAYLANES_SCENE_CALLS
 
 template <class Kind>
 using NumberOfKind = typename CallsOf<Kind>::Number;

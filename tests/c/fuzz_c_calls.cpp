@@ -17,7 +17,7 @@ class Caller {
   using Number = typename C::Number;
   using Queries = QueriesOf<Kind>;
   using Hit = HitOfKind<Kind>;
-  static constexpr bool is_tree = !std::is_same_v<Kind, Scene>;
+  static constexpr bool is_tree = std::is_arithmetic_v<Kind>;
   template <class Query>
   using OptionsOf = typename std::decay_t<Query>::Options;
 
@@ -43,7 +43,7 @@ class Caller {
                   n, stride);
       });
     else if (group < 6)
-      some_query(Queries::of_lists(), bytes_.below(3),
+      some_query(Queries::of_lists(), bytes_.below(std::tuple_size_v<decltype(Queries::of_lists())>),
                  [&](const auto& query) { ask_lists(query, tree, from, n, stride); });
     else if (group == 6)
       ask_shadows(bytes_.chance(128), tree, from, n, stride);
@@ -282,8 +282,9 @@ template <class Kind>
 void ask_tree(Bytes& bytes) {
   Caller<Kind> caller(bytes);
   const std::size_t kind = bytes.below(8);
-  if (kind == 1) return caller.save_and_load();
-  if constexpr (!std::is_same_v<Kind, Scene>)
+  if constexpr (!std::is_same_v<Kind, SceneD>)
+    if (kind == 1) return caller.save_and_load();
+  if constexpr (std::is_arithmetic_v<Kind>)
     if (kind == 0) return caller.build();
   caller.ask();
 }
@@ -297,14 +298,15 @@ int fuzz_c_calls(const std::uint8_t* data, std::size_t size) {
   const auto root = [](auto... arguments) { raylanes::sqrt(arguments...); };
   const auto reciprocal_root = [](auto... arguments) { raylanes::rsqrt(arguments...); };
   const auto reciprocal = [](auto... arguments) { raylanes::reciprocal(arguments...); };
-  const std::size_t kind = bytes.below(18);
+  const std::size_t kind = bytes.below(20);
   kind == 0           ? ask_roots<float>(bytes, raylanes_sqrt, root)
   : kind == 1         ? ask_roots<double>(bytes, raylanes_sqrtd, root)
   : kind == 2         ? ask_roots<float>(bytes, raylanes_rsqrt, reciprocal_root)
   : kind == 3         ? ask_roots<double>(bytes, raylanes_rsqrtd, reciprocal_root)
   : kind == 4         ? ask_roots<float>(bytes, raylanes_reciprocal, reciprocal)
   : kind == 5         ? ask_roots<double>(bytes, raylanes_reciprocald, reciprocal)
-  : kind < 10         ? ask_tree<raylanes::Scene>(bytes)
+  : kind < 9          ? ask_tree<raylanes::Scene>(bytes)
+  : kind < 12         ? ask_tree<raylanes::SceneD>(bytes)
   : bytes.chance(128) ? ask_tree<float>(bytes)
                       : ask_tree<double>(bytes);
   return 0;

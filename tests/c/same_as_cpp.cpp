@@ -5,7 +5,7 @@
 namespace raylanes::testing {
 namespace {
 
-using Kinds = ::testing::Types<float, double, Scene>;
+using Kinds = ::testing::Types<float, double, Scene, SceneD>;
 TYPED_TEST_SUITE(CCalls, Kinds);
 
 TYPED_TEST(CCalls, write_the_results_of_the_classes) {

@@ -1,4 +1,5 @@
-// Scenes of C beside the class: files, normals, reports, spheres and primitives of the caller.
+// Scenes of C beside the classes: changes, normals, which part; of floats also files, reports, spheres and the caller's
+// primitives.
 #include "as_cpp.hpp"
 
 namespace raylanes::testing {
@@ -56,42 +57,6 @@ TEST_F(CScenes, follow_changes_of_the_class) {
   EXPECT_EQ(raylanes_scene_describe(scene, &report, sizeof report), RAYLANES_OK);
   EXPECT_EQ(std::memcmp(&report, &expected, sizeof report), 0);
   EXPECT_EQ(raylanes_scene_bytes(scene), cpp_tree.bytes());
-  std::vector<SceneHit> hits(count);
-  cpp_tree.closest(rays, hits);
-  expect_same<Float3>(
-      "normals", 0,
-      [&](auto& normals) {
-        return raylanes_scene_normals(scene, hits.data(), count, 0, static_cast<float*>(normals.data()), 2);
-      },
-      [&](auto& normals) { cpp_tree.normals(hits, normals); });
-  expect_same<Triangle>(
-      "corners", 0,
-      [&](auto& corners) {
-        return raylanes_scene_corners(scene, hits.data(), count, 0, static_cast<float*>(corners.data()), 2);
-      },
-      [&](auto& corners) { cpp_tree.corners(hits, corners); });
-}
-
-TEST_F(CScenes, know_the_parts_that_the_class_knows) {
-  std::size_t found = 0;
-  each_point_option<LocateOptions>([&](const auto& c, const auto& by) {
-    const auto from = points();
-    Apart<ContainingPart> parts(count);
-    void* const to = parts.data();
-    ASSERT_EQ(raylanes_scene_innermost_parts(c_tree.get(), from.first, count, from.stride,
-                                             static_cast<raylanes_containing_part*>(to), &c),
-              RAYLANES_OK);
-    std::vector<ContainingPart> expected(count);
-    cpp_tree.innermost_parts(from, expected, by);
-    EXPECT_TRUE(parts.values() == expected);
-    const auto lists = made<ListsOfC>([&](raylanes_lists** address) {
-      raylanes_scene_containing_parts(c_tree.get(), from.first, count, from.stride, address, &c);
-    });
-    const auto all = cpp_tree.containing_parts(from, by);
-    expect_lists(lists, all);
-    found += all.items.size();
-  });
-  EXPECT_GT(found, 0u);
 }
 
 // A square in the middle of a box, to see through from one side.
@@ -161,6 +126,87 @@ TEST_F(CScenes, have_the_spheres_and_primitives_of_the_class) {
                  cpp_tree.all_hits(rays, {.active = by.active, .skip = by.skip, .mask = by.mask}));
   });
   EXPECT_TRUE(found[2] > count && found[3] > count);
+}
+
+template <class Kind>
+class CScenesOfAny : public CCalls<Kind> {};
+using Kinds = ::testing::Types<Scene, SceneD>;
+TYPED_TEST_SUITE(CScenesOfAny, Kinds);
+
+TYPED_TEST(CScenesOfAny, change_as_the_classes_do) {
+  using C = CallsOf<TypeParam>;
+  using Number = typename C::Number;
+  auto& scene = this->cpp_tree;
+  auto* const of_c = this->c_tree.get();
+  auto turned = this->ball;
+  for (auto& vertex : turned.vertices) std::swap(vertex[0], vertex[2]);
+  const typename C::PlaceBy raised{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0.25f}}};
+  scene.replace(0, typename CallsOf<Number>::Tree(turned.vertices, turned.triangles));
+  scene.move(5, {}), scene.move(0, raised), scene.set_mask(2, 7), scene.update();
+  auto tree = c_tree_of<Number>(turned);
+  auto copy = made<TreeOfC<TypeParam>>([&](auto** to) { C::copy(to, of_c); });
+  EXPECT_EQ(C::replace_tree(of_c, 0, tree.get()), RAYLANES_OK);
+  tree.reset();
+  EXPECT_EQ(C::move(of_c, 5, nullptr), RAYLANES_OK);
+  EXPECT_EQ(C::move(of_c, 0, raised.row[0]), RAYLANES_OK);
+  EXPECT_EQ(C::set_mask(of_c, 2, 7), RAYLANES_OK);
+  EXPECT_EQ(C::update(of_c, 1), RAYLANES_OK);
+  EXPECT_EQ(C::bytes(of_c), scene.bytes());
+  std::vector<HitOfKind<TypeParam>> hits(count), of_copy(count);
+  scene.closest(this->rays, hits);
+  this->template expect_same<HitOfKind<TypeParam>>(
+      "closest", 0,
+      [&](auto& to) { return C::closest(of_c, this->rays.data(), count, 0, to.data(), 0, nullptr); },
+      [&](auto& to) { scene.closest(this->rays, to); });
+  C::closest(copy.get(), this->rays.data(), count, 0, of_copy.data(), 0, nullptr);
+  EXPECT_FALSE(same_bytes(hits, of_copy));
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    std::uint32_t geometry = 7, mask = 7;
+    typename C::PlaceBy transform;
+    EXPECT_EQ(C::geometry_of(of_c, i, &geometry), RAYLANES_OK);
+    EXPECT_EQ(C::mask_of(of_c, i, &mask), RAYLANES_OK);
+    EXPECT_EQ(C::transform_of(of_c, i, transform.row[0]), RAYLANES_OK);
+    EXPECT_TRUE(geometry == scene.geometry_of(i) && mask == scene.mask_of(i));
+    EXPECT_TRUE(same_bytes(transform, scene.transform_of(i)));
+  }
+  for (const std::size_t apart : {std::size_t{0}, sizeof hits[0]}) {
+    this->template expect_same<PointOf<Number>>(
+        "normals", 0,
+        [&](auto& to) {
+          return C::normals(of_c, hits.data(), count, apart, static_cast<Number*>(to.data()), 2);
+        },
+        [&](auto& to) { scene.normals(hits, to); });
+    this->template expect_same<typename C::Corners>(
+        "corners", 0,
+        [&](auto& to) {
+          return C::corners(of_c, hits.data(), count, apart, static_cast<Number*>(to.data()), 2);
+        },
+        [&](auto& to) { scene.corners(hits, to); });
+  }
+}
+
+TYPED_TEST(CScenesOfAny, know_the_parts_that_the_classes_know) {
+  using C = CallsOf<TypeParam>;
+  auto* const scene = this->c_tree.get();
+  std::size_t found = 0;
+  this->template each_point_option<LocateOptions>([&](const auto& c, const auto& by) {
+    const auto from = this->points();
+    Apart<ContainingPart> parts(count);
+    void* const to = parts.data();
+    ASSERT_EQ(C::innermost_parts(scene, from.first, count, from.stride,
+                                 static_cast<raylanes_containing_part*>(to), &c),
+              RAYLANES_OK);
+    std::vector<ContainingPart> expected(count);
+    this->cpp_tree.innermost_parts(from, expected, by);
+    EXPECT_TRUE(parts.values() == expected);
+    const auto lists = made<ListsOfC>([&](raylanes_lists** address) {
+      C::containing_parts(scene, from.first, count, from.stride, address, &c);
+    });
+    const auto all = this->cpp_tree.containing_parts(from, by);
+    this->expect_lists(lists, all);
+    found += all.items.size();
+  });
+  EXPECT_GT(found, 0u);
 }
 
 }  // namespace

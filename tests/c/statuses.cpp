@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "../../accel/c/call.hpp"
+#include "../doubles/double_cases.hpp"
 #include "../support/guarded_array.hpp"
 #include "../support/limited_memory.hpp"
 #include "../support/random_input.hpp"
@@ -77,17 +78,19 @@ int32_t never_hit(void*, std::uint32_t, const raylanes_ray*, raylanes_hit*) {
   return 0;
 }
 
+// Repeats a call with ever more memory, until it has enough.
+void run_out(const std::function<void()>& call) {
+  std::size_t allocations = 0;
+  while (allocations < 10'000 && runs_out(allocations, unlimited, call)) ++allocations;
+  EXPECT_GT(allocations, 0u);
+  EXPECT_LT(allocations, 10'000u);
+}
+
 TEST(CMemory, that_runs_out_is_a_status) {
   const Mesh mesh = ellipsoid(2, {0, 0, 0});
   const std::vector<Ray> rays = mixed_rays(mesh, 200, 4, {0, 0, 0}, 15);
-  const auto run = [](const std::function<void()>& call) {
-    std::size_t allocations = 0;
-    while (allocations < 10'000 && runs_out(allocations, unlimited, call)) ++allocations;
-    EXPECT_GT(allocations, 0u);
-    EXPECT_LT(allocations, 10'000u);
-  };
   raylanes_bvh* tree = nullptr;
-  run([&] {
+  run_out([&] {
     raylanes_bvh* made = reinterpret_cast<raylanes_bvh*>(&tree);  // anything
     const raylanes_status status =
         raylanes_bvh_create(&made, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
@@ -96,7 +99,7 @@ TEST(CMemory, that_runs_out_is_a_status) {
     expect_good_or_out(status);
     tree = made;
   });
-  run([&] {
+  run_out([&] {
     raylanes_lists* lists = nullptr;
     const raylanes_status status = raylanes_bvh_all_hits(tree, rays.data(), rays.size(), 0, &lists, nullptr);
     EXPECT_EQ(lists != nullptr, status == RAYLANES_OK);
@@ -104,42 +107,60 @@ TEST(CMemory, that_runs_out_is_a_status) {
     expect_good_or_out(status);
   });
   std::vector<Hit> hits(rays.size());
-  run([&] {
+  run_out([&] {
     expect_good_or_out(raylanes_bvh_closest(tree, rays.data(), rays.size(), 0, hits.data(), 0, nullptr));
   });
-  raylanes_scene* scene = nullptr;
-  run([&] {
-    raylanes_scene* made = nullptr;
-    std::uint32_t part = 0;
-    std::vector<raylanes_status> statuses{raylanes_scene_create(&made)};
-    const auto call = [&](raylanes_status status) { statuses.push_back(status); };
-    if (made != nullptr) {
-      call(raylanes_scene_add_tree(made, tree, &part));
-      call(raylanes_scene_add_mesh(made, mesh.vertices.data(), mesh.vertices.size(), 0, mesh.triangles.data(),
-                                   mesh.triangles.size(), 0, nullptr, &part));
-      call(raylanes_scene_add_primitives(made, rays.data(), 5, 0, never_hit, nullptr, nullptr, &part));
-      for (std::uint32_t i = 0; i < 3; ++i) call(raylanes_scene_place(made, i, nullptr, 1, &part));
-      call(raylanes_scene_update(made, 1));
-    }
-    for (const raylanes_status status : statuses)
-      if (status == RAYLANES_OUT_OF_MEMORY) raylanes_scene_destroy(made), made = nullptr;
-    for (const raylanes_status status : statuses) expect_good_or_out(status);
-    scene = made;
+  raylanes_bvh_destroy(tree);
+}
+
+template <class Kind, class AnyMesh, class AnyRay>
+void run_out_in_scenes(const AnyMesh& mesh, const std::vector<AnyRay>& rays) {
+  using C = CallsOf<Kind>;
+  const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+  const auto tree = made<TreeOfC<typename C::Number>>([&](auto** address) {
+    CallsOf<typename C::Number>::create(address, mesh.vertices.data(), vertices, 0, mesh.triangles.data(),
+                                        triangles, 0, nullptr);
   });
-  run([&] {
-    raylanes_scene* copy = nullptr;
-    const raylanes_status status = raylanes_scene_copy(&copy, scene);
+  TreeOfC<Kind> scene;
+  run_out([&] {
+    std::uint32_t part = 0;
+    std::vector<raylanes_status> statuses;
+    const auto call = [&](raylanes_status status) { statuses.push_back(status); };
+    auto whole = made<TreeOfC<Kind>>([&](auto** address) { call(C::create(address)); });
+    if (whole != nullptr) {
+      call(C::add_tree(whole.get(), tree.get(), &part));
+      call(C::add_mesh(whole.get(), mesh.vertices.data(), vertices, 0, mesh.triangles.data(), triangles, 0,
+                       nullptr, &part));
+      if constexpr (std::is_same_v<Kind, Scene>)
+        call(raylanes_scene_add_primitives(whole.get(), rays.data(), 5, 0, never_hit, nullptr, nullptr,
+                                           &part));
+      const std::uint32_t parts = part + 1;
+      for (std::uint32_t i = 0; i < parts; ++i) call(C::place(whole.get(), i, nullptr, 1, &part));
+      call(C::update(whole.get(), 1));
+    }
+    for (const raylanes_status status : statuses) expect_good_or_out(status);
+    scene = std::move(whole);
+  });
+  run_out([&] {
+    raylanes_status status = RAYLANES_OK;
+    const auto copy = made<TreeOfC<Kind>>([&](auto** address) { status = C::copy(address, scene.get()); });
     EXPECT_EQ(copy != nullptr, status == RAYLANES_OK);
-    raylanes_scene_destroy(copy);
     expect_good_or_out(status);
   });
-  std::vector<SceneHit> scene_hits(rays.size());
-  run([&] {
-    expect_good_or_out(
-        raylanes_scene_closest(scene, rays.data(), rays.size(), 0, scene_hits.data(), 0, nullptr));
+  run_out([&] {
+    raylanes_status status = RAYLANES_OK;
+    const auto lists = made<ListsOfC>([&](auto** address) {
+      status = C::all_hits(scene.get(), rays.data(), rays.size(), 0, address, nullptr);
+    });
+    EXPECT_EQ(lists != nullptr, status == RAYLANES_OK);
+    expect_good_or_out(status);
   });
-  raylanes_scene_destroy(scene);
-  raylanes_bvh_destroy(tree);
+}
+TEST(CMemory, that_runs_out_in_scenes_is_a_status) {
+  const Mesh mesh = ellipsoid(2, {0, 0, 0});
+  run_out_in_scenes<Scene>(mesh, mixed_rays(mesh, 200, 4, {0, 0, 0}, 15));
+  const DoubleMesh of_doubles = moved(mesh, 1.1, {0, 0.1, 0});
+  run_out_in_scenes<SceneD>(of_doubles, aimed_rays(of_doubles, 200, 15));
 }
 
 TEST(CMemory, is_not_taken_for_what_a_damaged_file_says) {

@@ -31,6 +31,7 @@ void expect_refused(raylanes_status status, raylanes_status wanted, const char* 
 void test_trees_of_floats(void);
 void test_trees_of_doubles(void);
 void test_scenes(void);
+void test_scenes_of_doubles(void);
 void test_roots(void);
 void test_paths(void);
 void test_options(void);

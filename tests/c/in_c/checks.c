@@ -44,6 +44,7 @@ int check_c_interface(const char* files) {
   test_trees_of_floats();
   test_trees_of_doubles();
   test_scenes();
+  test_scenes_of_doubles();
   printf("%d checks, %d failed\n", checks, failures);
   return failures;
 }

@@ -44,3 +44,9 @@ static int32_t tell_progress(void* context, double share) {
   state[0] = share;
   return share >= state[1];
 }
+
+static void expect_tetrahedron(const TREE* tree) {
+  RECORD(hit) hit;
+  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
+  EXPECT(hit.t == 1.5 && hit.primitive == 3);
+}

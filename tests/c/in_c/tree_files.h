@@ -1,11 +1,5 @@
 // Files of one kind of tree or of scenes, for tree_test.h and scenes.c.
 
-static void expect_tetrahedron(const TREE* tree) {
-  RECORD(hit) hit;
-  GOOD(CALL(closest1)(tree, rays, &hit, NULL));
-  EXPECT(hit.t == 1.5 && hit.primitive == 3);
-}
-
 static void test_files(const TREE* tree) {
   static const char umlaut[] = "\xc3\xa4.tree";
   TREE* loaded = NULL;

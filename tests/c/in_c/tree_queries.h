@@ -2,7 +2,7 @@
 
 static void test_hits(const TREE* tree) {
   RECORD(hit) hits[3];
-  unsigned char apart[3 * 37];
+  unsigned char apart[3 * 41];
   uint8_t occluded[3];
   size_t i;
   GOOD(CALL(closest)(tree, rays, 3, 0, hits, 0, NULL));
@@ -10,10 +10,10 @@ static void test_hits(const TREE* tree) {
   EXPECT(isinf(hits[1].t) && hits[1].u == 0 && hits[1].v == 0 && hits[1].primitive == RAYLANES_NO_PRIMITIVE);
   EXPECT(hits[2].t == 0.25 && hits[2].primitive == 0);
   memset(apart, 0x5a, sizeof apart);
-  GOOD(CALL(closest)(tree, rays, 3, sizeof *rays, apart, 37, NULL));
+  GOOD(CALL(closest)(tree, rays, 3, sizeof *rays, apart, 41, NULL));
   for (i = 0; i < 3; ++i) {
-    EXPECT(memcmp(apart + 37 * i, hits + i, sizeof *hits) == 0);
-    EXPECT(apart[37 * i + 36] == 0x5a);
+    EXPECT(memcmp(apart + 41 * i, hits + i, sizeof *hits) == 0);
+    EXPECT(apart[41 * i + 40] == 0x5a);
   }
   GOOD(CALL(occluded)(tree, rays, 3, 0, occluded, NULL));
   EXPECT(occluded[0] == 1 && occluded[1] == 0 && occluded[2] == 1);
@@ -160,7 +160,6 @@ static void test_lists(const TREE* tree) {
   const size_t* offsets;
   const RECORD(hit) * hits;
   const RECORD(crossing) * crossings;
-  const RECORD(stretch) * stretches;
   raylanes_crossing_count counts[3];
   GOOD(CALL(all_hits)(tree, rays, 3, 0, &lists, NULL));
   offsets = raylanes_lists_offsets(lists);
@@ -175,14 +174,6 @@ static void test_lists(const TREE* tree) {
   EXPECT(offsets[1] == 2 && offsets[2] == 2 && offsets[3] == 3);
   EXPECT(crossings[0].t == 1.5 && crossings[0].side == -1 && crossings[0].primitive == 3);
   EXPECT(crossings[1].t == 2 && crossings[1].side == 1 && crossings[2].side == 1);
-  raylanes_lists_destroy(lists);
-  GOOD(CALL(stretches)(tree, rays, 3, 0, &lists, NULL));
-  offsets = raylanes_lists_offsets(lists);
-  stretches = raylanes_lists_items(lists);
-  EXPECT(offsets[1] == 1 && offsets[2] == 1 && offsets[3] == 2);
-  EXPECT(stretches[0].entry == 1.5 && stretches[0].exit == 2 && stretches[0].winding == 1);
-  EXPECT(stretches[0].entered_by == 3 && stretches[0].left_by == 0);
-  EXPECT(stretches[1].entry == 0 && stretches[1].entered_by == RAYLANES_NO_PRIMITIVE);
   raylanes_lists_destroy(lists);
   GOOD(CALL(count_crossings)(tree, rays, 3, 0, counts, NULL));
   EXPECT(counts[0].crossings == 2 && counts[0].winding == 0 && counts[1].crossings == 0);
@@ -224,7 +215,6 @@ static void test_functions_of_rays(const TREE* tree) {
   REFUSED(CALL(closest_crossing1)(tree, rays, &hit, &options), "filter");
   REFUSED(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), "filter");
   REFUSED(CALL(crossings)(tree, rays, 3, 0, &lists, &options), "filter");
-  REFUSED(CALL(stretches)(tree, rays, 3, 0, &lists, &options), "filter");
   REFUSED(CALL(count_crossings)(tree, rays, 3, 0, counts, &options), "filter");
 
   options = ray_options();

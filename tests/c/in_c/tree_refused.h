@@ -16,7 +16,6 @@ static void test_wrong_options(const TREE* tree, void (*change)(raylanes_ray_opt
   REFUSED(CALL(occluded_towards)(tree, points, points, 3, 0, occluded, &options), word);
   REFUSED(CALL(all_hits)(tree, rays, 3, 0, &lists, &options), word);
   REFUSED(CALL(crossings)(tree, rays, 3, 0, &lists, &options), word);
-  REFUSED(CALL(stretches)(tree, rays, 3, 0, &lists, &options), word);
   EXPECT(hits[0].t == 7 && hits[2].t == 7 && occluded[0] == 7 && lists == NULL);
 }
 
@@ -70,9 +69,6 @@ static void test_refused_rays(const TREE* tree) {
   REFUSED(CALL(crossings)(tree, rays, 3, 0, NULL, NULL), "lists");
   REFUSED(CALL(crossings)(NULL, rays, 3, 0, &lists, NULL), KIND);
   REFUSED(CALL(crossings)(tree, rays, 3, 5, &lists, NULL), "rays");
-  REFUSED(CALL(stretches)(tree, rays, 3, 0, NULL, NULL), "lists");
-  REFUSED(CALL(stretches)(NULL, rays, 3, 0, &lists, NULL), KIND);
-  REFUSED(CALL(stretches)(tree, NULL, 3, 0, &lists, NULL), "rays");
   REFUSED(CALL(count_crossings)(NULL, rays, 3, 0, counts, NULL), KIND);
   REFUSED(CALL(count_crossings)(tree, NULL, 3, 0, counts, NULL), "rays");
   REFUSED(CALL(count_crossings)(tree, rays, 3, 0, NULL, NULL), "counts");
@@ -83,10 +79,6 @@ static void test_refused_rays(const TREE* tree) {
   REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), "after");
   options.after_stride = SIZE_MAX;
   REFUSED(CALL(closest)(tree, rays, 3, 0, hits, 0, &options), "after");
-  options = ray_options();
-  options.facing = RAYLANES_FACING_FRONT;
-  REFUSED(CALL(stretches)(tree, rays, 3, 0, &lists, &options), "facing");
-  EXPECT(lists == NULL);
   test_wrong_options(tree, set_threads, "threads");
   test_wrong_options(tree, set_facing, "facing");
   test_wrong_options(tree, set_path, "sse9");

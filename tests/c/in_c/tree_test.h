@@ -5,6 +5,7 @@
 #include "tree_queries.h"
 #include "tree_refused.h"
 #include "tree_refused_points.h"
+#include "tree_stretches.h"
 #include "tree_triangles.h"
 
 static TREE* tetrahedron(void) {
@@ -134,6 +135,7 @@ void TEST_TREES(void) {
   test_progress_of_points(tree);
   test_refused_shadows(tree);
   test_lists(tree);
+  test_stretches(tree);
   test_triangles(tree);
   test_refused_triangles(tree);
   test_points(tree);

@@ -440,6 +440,23 @@ TEST_F(Unmasked, the_interface_of_c) {
     }
     raylanes_scene_destroy(scene);
   };
+  const Batch<double, HitD> of_doubles;
+  const DoubleMesh wide = moved(mesh, 1, {});
+  calls["raylanes_scene_d"] = [&] {
+    raylanes_scene_d* scene = nullptr;
+    std::uint32_t part = 0;
+    ASSERT_EQ(raylanes_scene_d_create(&scene), RAYLANES_OK);
+    raylanes_scene_d_add_mesh(scene, wide.vertices.data(), wide.vertices.size(), 0, wide.triangles.data(),
+                              wide.triangles.size(), 0, nullptr, &part);
+    for (const double x : {0.0, 1e-310, 1.0 / 3, 1e308, HUGE_VAL}) {
+      const double transform[] = {1, x, 0, 1, 0, 0.3, x, 0, 0, 0, 1, x};
+      raylanes_scene_d_place(scene, 0, transform, ~0u, &part);
+    }
+    ASSERT_EQ(raylanes_scene_d_update(scene, 1), RAYLANES_OK);
+    std::vector<SceneHitD> hits(of_doubles.rays.size());
+    raylanes_scene_d_closest(scene, of_doubles.rays.data(), hits.size(), 0, hits.data(), 0, nullptr);
+    raylanes_scene_d_destroy(scene);
+  };
   run(calls);
 }
 
