@@ -120,15 +120,15 @@ struct SphereGeometry : Geometry {
   }
   // Under their numbers; those that nothing hits, and of which the tree has nothing, as empty ones.
   GeometryRecord record(std::size_t, std::vector<Sphere>& to) const override {
-    const auto& [boxes, numbers, radius] = leaves();
+    const SphereTreeArrays& tree = leaves();
     const std::size_t begin = to.size();
-    to.resize(begin + boxes.size, Sphere{{0, 0, 0}, -1});
-    each_leaf(boxes, [&](std::size_t first, std::size_t size) {
-      const auto row = rows_of(numbers.data(), first, size);
+    to.resize(begin + tree.boxes.size, Sphere{{0, 0, 0}, -1});
+    each_leaf(tree.boxes, [&](std::size_t first, std::size_t size) {
+      const auto row = rows_of(tree.numbers.data(), first, size);
       for (std::size_t k = 0; k < size; ++k)
-        to[begin + boxes.order[first + k]] = {{row[0][k], row[1][k], row[2][k]}, radius[first + k]};
+        to[begin + tree.boxes.order[first + k]] = {{row[0][k], row[1][k], row[2][k]}, tree.radius[first + k]};
     });
-    return {sphere_geometry, static_cast<std::uint32_t>(boxes.size)};
+    return {sphere_geometry, static_cast<std::uint32_t>(tree.boxes.size)};
   }
 
   std::shared_ptr<const SphereTreeArrays> kept;  // null: no spheres
