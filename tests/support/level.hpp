@@ -34,15 +34,16 @@ inline bool exhaustive() {
   return level() == Level::exhaustive;
 }
 
-// The cost of a check at a level: the heaviest ones have a number for each. Exhaustive ones try floats, not more cases.
+// The cost of a check at a level: the heaviest ones have a number for each.
 template <class T>
 T by_level(T quick, T usual, T all) {
   return level() == Level::quick ? quick : level() == Level::usual ? usual : all;
 }
 
-// A sixth of so many cases where quick() holds and a quarter as usual, but 60 at least.
-inline std::size_t by_level(std::size_t all) {
-  return std::max<std::size_t>(by_level(all / 6, all / 4, all), std::min<std::size_t>(all, 60));
+// A sixth of so many cases where quick() holds, a quarter as usual and half at level all, but 60 at least.
+inline std::size_t by_level(std::size_t most) {
+  const std::size_t some = exhaustive() ? most : by_level(most / 6, most / 4, most / 2);
+  return std::max<std::size_t>(some, std::min<std::size_t>(most, 60));
 }
 
 }  // namespace raylanes::testing
