@@ -288,7 +288,8 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
     const std::uint32_t nearest = nearest_triangle(tree, ray, begin_after(&last, ray.tmin), rule);
     if (nearest == no_leaf_triangle) return {};
     last = known_hit(DoubleTriangles(tree), ray, nearest);
-  } while (asked.rejects != nullptr && asked.rejects(asked.function, last));
+  } while (asked.rejects != nullptr && tree.tree.masks.may_reject(last.primitive) &&
+           asked.rejects(asked.function, last));
   return last;
 }
 #if defined(__AVX2__) && defined(__FMA__)

@@ -87,11 +87,12 @@ class SpheresOfRay {
         search.end_at({of_lane[lane], 0, 0, primitives[lane]});
     }
   }
-  // Asks about the hits of some lanes that would be the best so far.
+  // Asks about the hits of some lanes that would be the best so far. A ray that touches a sphere has one hit.
   [[gnu::noinline]] bool ask(const SphereDistancesOf<V>& d, std::uint32_t nears, std::uint32_t fars,
                              const std::uint32_t* primitives, SphereSearch& search) const {
     float t[2][node_lanes];
     d.near.store(t[0]), d.far.store(t[1]);
+    fars &= ~(nears & bits(d.near == d.far));
     for (int lane = 0; lane < node_lanes; ++lane)
       for (int side = 0; side < 2; ++side) {
         if (((side == 0 ? nears : fars) >> lane & 1u) == 0) continue;

@@ -179,8 +179,7 @@ class EveryQuery : public ::testing::Test {
  public:
   // Rational numbers of doubles take longer.
   static std::size_t rays(std::size_t all) {
-    return std::is_same_v<T, float> ? by_level(all / 3, all / 3, all / 2)
-                                    : by_level(all / 5, all / 5, all / 3);
+    return std::is_same_v<T, float> ? all / (exhaustive() ? 2 : 3) : all / (exhaustive() ? 3 : 5);
   }
 };
 TYPED_TEST_SUITE(EveryQuery, Numbers, NumberNames);
