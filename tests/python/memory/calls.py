@@ -91,6 +91,7 @@ def queries_of(tree):
     yield "closest(skip)", lambda: tree.closest(rays, skip=first, active=active, threads=1).tobytes()
     yield "closest(origins)", lambda: tree.closest(origins=[0, 0, 2], directions=points, tmax=numbers[0]).tobytes()
     yield "occluded_from", lambda: tree.occluded_from(points[0], points, threads=1).tobytes()
+    yield "closest(masks)", lambda: tree.closest(rays, masks=range(len(faces)), mask=2, threads=1).tobytes()
     yield "all_hits", lambda: lists(tree.all_hits(rays, threads=1))
     yield "crossings", lambda: lists(tree.crossings(rays, threads=1))
     yield "stretches", lambda: lists(tree.stretches(rays, threads=1))
@@ -189,6 +190,7 @@ def native_calls():
     tree, kd_tree = (kind(vertices, faces, threads=1)._tree for kind in (raylanes.Bvh, raylanes.KdTree))
     of_doubles = raylanes.Bvh(doubles, faces, threads=1)._tree.to_bytes()
     data, bits = tree.to_bytes(), np.packbits(active, bitorder="little")
+    of_triangles = np.arange(len(faces), dtype=np.uint32)
     yield "_native.Bvh", lambda: _native.Bvh(vertices, faces, "binned_sah", 1, False, 0.0, None).nbytes()
     yield "_native.KdTree", lambda: _native.KdTree(vertices, faces, "sah", 1, None).nbytes()
     yield "_native.Bvh(data)", lambda: _native.Bvh(data).to_bytes()
@@ -205,9 +207,9 @@ def native_calls():
     yield "_native.bounds", lambda: tree.bounds()
     yield "_native.sah_cost", lambda: (tree.sah_cost(), tree.decay())
     yield "_native.all_hits", lambda: [found.tobytes() for found in tree.all_hits(
-        rays, 0xFFFFFFFF, "any", None, 1, bits, None, None)]
+        rays, 0xFFFFFFFF, "any", None, 1, bits, None, None, None)]
     yield "_native.all_hits(progress)", lambda: [found.tobytes() for found in tree.all_hits(
-        rays, 0xFFFFFFFF, "any", None, 1, bits, abs, np.zeros(len(rays), np.uint32))]
+        rays, 0xFFFFFFFF, "any", None, 1, bits, abs, np.zeros(len(rays), np.uint32), (2, of_triangles, 2))]
     yield "_native.Bvh(progress)", lambda: _native.Bvh(
         vertices, faces, "binned_sah", 1, False, 0.0, abs).nbytes()
     yield from native_calls_of_scenes(tree)

@@ -31,7 +31,7 @@ def test_calls_see_some_triangles(world):
     every, some = tree.all_hits(rays), tree.all_hits(rays, **by)
     assert any(len(part) for part in some)
     for all_of_ray, of_ray in zip(every, some):
-        assert same(of_ray, all_of_ray[seen[all_of_ray.primitive]])
+        assert np.array_equal(of_ray, all_of_ray[seen[all_of_ray.primitive]])
     hits = tree.closest(rays, **by)
     assert np.array_equal(hits.primitive, firsts(some))
     assert np.array_equal(tree.occluded(rays, **by), hits.hit)
