@@ -36,7 +36,7 @@ constexpr struct {
                {"doubles", fuzz_doubles, 10},
                {"c_calls", fuzz_c_calls, 250},
                {"embree", fuzz_embree, 50},
-               {"scenes_of_doubles", fuzz_scenes_of_doubles, 50}};
+               {"scenes_of_doubles", fuzz_scenes_of_doubles, 8}};
 
 char repeat_line[256] = "fuzz: before the first run\n";
 
