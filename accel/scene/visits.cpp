@@ -9,6 +9,21 @@
 namespace raylanes {
 namespace {
 
+// A leaf as a test is given it, for rays of the batch by these numbers.
+LeafVisit visit_of(const BoundedTreeArrays& tree, const GeometryBatch& batch, std::uint32_t first,
+                   std::uint32_t size, std::span<const std::uint32_t> rays) {
+  return {std::span(tree.order).subspan(first, size),
+          first,
+          rays,
+          batch.rays,
+          batch.hits,
+          batch.occluded,
+          batch.skip,
+          batch.after,
+          batch.instance,
+          batch.numbers};
+}
+
 struct Visit {
   const BoundedTreeArrays& tree;
   const LeafCallback& test;
@@ -19,9 +34,7 @@ struct Visit {
  private:
   void at(const VisitedLeaf& leaf) const {
     const std::span<const std::uint32_t> rays(leaf.rays, leaf.count);
-    test.visit(test.context,
-               {std::span(tree.order).subspan(leaf.first, leaf.size), leaf.first, rays, batch.rays,
-                batch.hits, batch.occluded, batch.skip, batch.after, batch.instance, batch.numbers});
+    test.visit(test.context, visit_of(tree, batch, leaf.first, leaf.size, rays));
     if (batch.hits != nullptr)
       for (std::size_t k = 0; k < leaf.count; ++k)
         leaf.tmax[k] = std::min(leaf.tmax[k], tmax_after(batch.hits[leaf.rays[k]].t));
@@ -47,9 +60,7 @@ struct VisitOfOne {
   static float leaf(void* context, std::uint32_t first, std::uint32_t size) {
     const auto& [tree, test, batch] = *static_cast<const VisitOfOne*>(context);
     static constexpr std::uint32_t number[1] = {0};
-    test.visit(test.context,
-               {std::span(tree.order).subspan(first, size), first, number, batch.rays, batch.hits,
-                batch.occluded, batch.skip, batch.after, batch.instance, batch.numbers});
+    test.visit(test.context, visit_of(tree, batch, first, size, number));
     constexpr float infinity = std::numeric_limits<float>::infinity();
     return batch.hits != nullptr ? batch.hits->t : *batch.occluded != 0 ? -infinity : infinity;
   }

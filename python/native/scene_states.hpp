@@ -113,7 +113,7 @@ inline void require_as_many(std::size_t elements, std::size_t others) {
   if (elements != others) throw std::invalid_argument("arrays of instances have different sizes");
 }
 
-// Returns the first of the new instances, and how many numbers each of them takes: with those of its scene.
+// Returns the first of the new instances, and how many numbers each of them takes, parts of an added scene among them.
 inline std::pair<std::size_t, std::size_t> place(SharedScene& shared, std::uint32_t geometry,
                                                  const py::array& transforms, const py::array& masks) {
   const auto of_transforms = records_of<Transform>(transforms);

@@ -86,12 +86,15 @@ def how(test, grade, mode, hint, facing, threads, progress, skip, masks=None):
 def masked(mask, masks, filter_mask=EVERY_BIT):
     """The words of triangles and what they are compared with, as the native module takes them; None: there are none."""
     bits, asked = count("mask", mask, EVERY_BIT), count("filter_mask", filter_mask, EVERY_BIT)
-    if masks is None:
-        return None
+    return None if masks is None else (bits, words_of(masks), asked)
+
+
+def words_of(masks):
+    """The words of triangles as the native module takes them."""
     words = np.ascontiguousarray(unsigned("masks", masks), "<u4")
     if words.ndim != 1:
-        raise ValueError(f"masks: one word for each triangle is needed, the shape is {words.shape}")
-    return bits, words, asked
+        raise ValueError(f"masks: the shape must be (n,), it is {words.shape}")
+    return words
 
 
 def skipped(skip):

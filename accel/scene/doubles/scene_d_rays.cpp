@@ -165,8 +165,8 @@ class RayDoor<SceneD> {
   // Whether a call with one ray needs no checks, and nothing traps.
   bool is_quick() const { return parts_.is_current && !QuietFloats::are_wanted(); }
   SceneDQuery quick_query(const TraceOptionsD& options) const {
-    const Path& path = options.path != nullptr ? checked_path(options.path) : path_in_use();
-    return {parts_, kernels_of(path).doubles, options.mask, options.facing, options.skip};
+    return {parts_, kernels_of(checked_path(options.path)).doubles, options.mask, options.facing,
+            options.skip};
   }
   // Occlusion ignores it.
   static TraceOptionsD without_after(TraceOptionsD options) {

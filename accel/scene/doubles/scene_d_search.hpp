@@ -37,7 +37,7 @@ class SceneSearchD {
   std::uint32_t mask_;
   double max_distance_;
   Double3 point_{};
-  double limit_ = 0;  // what is farther away is not of use
+  double limit_ = 0;  // nothing farther away is of use
   SceneClosestPointD best_;
   std::vector<Waiting> waiting_;
 };

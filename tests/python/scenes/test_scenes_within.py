@@ -1,4 +1,4 @@
-"""Scenes in scenes: hits are those of one scene with the same parts, names and ways are those of all levels."""
+"""Scenes in scenes: hits are as in one scene with the same parts; names and ways go through all levels."""
 
 import copy
 import pickle
