@@ -4,8 +4,8 @@
 namespace raylanes::c::RAYLANES_NUMBERS {
 extern "C" {
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_stretches, raylanes_bvhd_stretches,
-                              raylanes_scene_stretches, )(const RAYLANES_HANDLE* handle, const void* rays,
+raylanes_status RAYLANES_CALL(raylanes_bvh_stretches, raylanes_bvhd_stretches, raylanes_scene_stretches,
+                              raylanes_scene_d_stretches)(const RAYLANES_HANDLE* handle, const void* rays,
                                                           std::size_t n, std::size_t stride,
                                                           raylanes_lists** lists,
                                                           const raylanes_ray_options* options) {

@@ -28,4 +28,7 @@ constexpr const char* kind = "scene";
 #define RAYLANES_NUMBERS of_scenes_of_doubles
 #include "object_calls.hpp"
 #include "object_points.hpp"
+#include "object_stretches.hpp"
 #include "scene_calls.hpp"
+
+static_assert(sizeof(raylanes::SceneStretchD) == sizeof(raylanes_scene_stretch_d));

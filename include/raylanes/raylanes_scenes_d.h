@@ -119,6 +119,11 @@ RAYLANES_STATUS raylanes_scene_d_crossings(const raylanes_scene_d* scene, const 
 RAYLANES_STATUS raylanes_scene_d_count_crossings(const raylanes_scene_d* scene, const void* rays, size_t n,
                                                  size_t stride, raylanes_crossing_count* counts,
                                                  const raylanes_ray_options* options);
+/// Finds where each ray runs within each instance: lists of raylanes_scene_stretch_d, in the order of entries, then of
+/// instances.
+RAYLANES_STATUS raylanes_scene_d_stretches(const raylanes_scene_d* scene, const void* rays, size_t n,
+                                           size_t stride, raylanes_lists** lists,
+                                           const raylanes_ray_options* options);
 /// Computes the unit normal in the scene of each raylanes_scene_hit_d: three doubles, NaN for misses. Visits all leaves
 /// of the geometries that are hit.
 RAYLANES_STATUS raylanes_scene_d_normals(const raylanes_scene_d* scene, const void* hits, size_t n,

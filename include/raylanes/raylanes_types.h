@@ -103,6 +103,14 @@ typedef struct raylanes_scene_stretch {
   int32_t winding;
   uint32_t geometry, instance;
 } raylanes_scene_stretch;
+/// A stretch of a ray of doubles within an instance.
+typedef struct raylanes_scene_stretch_d {
+  double entry, exit;
+  uint32_t entered_by, left_by;
+  int32_t winding;
+  uint32_t unused;
+  uint32_t geometry, instance;
+} raylanes_scene_stretch_d;
 
 /// How often a ray crosses the surface, and the sum of the sides.
 typedef struct raylanes_crossing_count {

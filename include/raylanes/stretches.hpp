@@ -5,7 +5,7 @@
 
 #include <raylanes/doubles.hpp>
 #include <raylanes/queries.hpp>
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 #include <raylanes/triangle_tree.hpp>
 
 namespace raylanes {
@@ -30,6 +30,12 @@ struct SceneStretch : Stretch {
 
   bool operator==(const SceneStretch&) const = default;
 };
+/// A stretch of a ray within an instance of a scene of doubles.
+struct SceneStretchD : StretchD {
+  std::uint32_t geometry, instance;  ///< of the scene, as in SceneHitD
+
+  bool operator==(const SceneStretchD&) const = default;
+};
 
 /// Returns the stretches of each ray within the solids of a tree, in order: each entry with its exit.
 /// They are made of crossings(): the winding number is 0 at the far end of the ray's line, and changes by the sides of
@@ -49,5 +55,7 @@ RayLists<StretchD> stretches(const BvhD& tree, RayViewD rays, const ListOptions&
 /// Throws as stretches() of a tree, std::invalid_argument if a geometry does not consist of triangles, and
 /// std::logic_error if the scene was changed without update().
 RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options = {});
+/// Returns the stretches of each ray of doubles within the instances of a scene.
+RayLists<SceneStretchD> stretches(const SceneD& scene, RayViewD rays, const ListOptions& options = {});
 
 }  // namespace raylanes

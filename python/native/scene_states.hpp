@@ -1,28 +1,43 @@
 // Scenes that Python's threads and copies share, and how they change.
 #pragma once
 
-#include <raylanes/scene.hpp>
+#include <raylanes/scene_d.hpp>
 
 #include "sphere_states.hpp"
 #include "tree_states.hpp"
 
 namespace raylanes::python {
 
-// As SharedTree: a query keeps the state that it begins with, and nobody sees a state change.
+// As SharedTree: a query keeps the state that it begins with, and nobody sees a state change. S: Scene or SceneD.
+template <class S>
 struct SharedScene {
-  using Object = Scene;
-  using Number = float;
-  using ClosestPoint = SceneClosestPoint;
-  explicit SharedScene(Scene&& scene) : state(std::make_shared<Scene>(std::move(scene))) {}
-  std::shared_ptr<Scene> state;
+  using Object = S;
+  using Number = typename raylanes::detail::QueryTypes<S>::Number;
+  using ClosestPoint = typename raylanes::detail::QueryTypes<S>::ClosestPoint;
+  explicit SharedScene(S&& scene) : state(std::make_shared<S>(std::move(scene))) {}
+  std::shared_ptr<S> state;
 };
 
-inline const Scene& tree_in(const SharedScene&, const Scene& state) {
+template <class S>
+inline constexpr bool has_floats = std::is_same_v<S, Scene>;
+// The trees of triangles in a scene, and where it places them.
+template <class S>
+using TreeIn = std::conditional_t<has_floats<S>, Bvh, BvhD>;
+template <class S>
+using TransformIn = std::conditional_t<has_floats<S>, Transform, TransformD>;
+
+template <class S>
+const S& tree_in(const SharedScene<S>&, const S& state) {
   return state;
 }
 
-inline std::unique_ptr<SharedScene> empty_scene() {
-  return std::make_unique<SharedScene>(Scene());
+template <class S>
+std::unique_ptr<SharedScene<S>> empty_scene() {
+  return std::make_unique<SharedScene<S>>(S());
+}
+template <class S>
+std::unique_ptr<SharedScene<S>> same_scene(const SharedScene<S>& other) {
+  return std::make_unique<SharedScene<S>>(other);
 }
 
 // Whether work on so many instances ends before another thread notices that this one keeps the GIL.
@@ -34,14 +49,14 @@ inline bool is_quick(std::size_t instances) {
 // scene as it was if it throws. Then the state itself is changed, if nobody else has it. Otherwise a copy is changed
 // without the GIL and swapped in. If another thread has changed the scene meanwhile, this begins again; the
 // fourth attempt keeps the GIL.
-template <class Work>
-void change(SharedScene& shared, bool in_place, const Work& work) {
+template <class S, class Work>
+void change(SharedScene<S>& shared, bool in_place, const Work& work) {
   if (in_place && shared.state.use_count() == 1) return work(*shared.state);
   for (int attempt = 0;; ++attempt) {
-    const std::shared_ptr<Scene> before = shared.state;
-    std::shared_ptr<Scene> made;
+    const std::shared_ptr<S> before = shared.state;
+    std::shared_ptr<S> made;
     const auto make = [&] {
-      made = std::make_shared<Scene>(std::as_const(*before));
+      made = std::make_shared<S>(std::as_const(*before));
       work(*made);
     };
     if (attempt < 3) {
@@ -58,31 +73,34 @@ void change(SharedScene& shared, bool in_place, const Work& work) {
 }
 
 // Passes the tree of a part, which the scene shares, to work(tree).
-template <class Work>
+template <class S, class Work>
 void with_part(const py::object& part, const Work& work) {
-  if (py::isinstance<SharedSpheres>(part)) {
-    const std::shared_ptr<const SphereState> state = part.cast<const SharedSpheres&>().state;
-    work(std::shared_ptr<const SphereTree>(state, &state->tree));
-  } else {
-    work(std::static_pointer_cast<const Bvh>(part.cast<const SharedTreeOf<Bvh>&>().state));
+  if constexpr (has_floats<S>) {
+    if (py::isinstance<SharedSpheres>(part)) {
+      const std::shared_ptr<const SphereState> state = part.cast<const SharedSpheres&>().state;
+      return work(std::shared_ptr<const SphereTree>(state, &state->tree));
+    }
   }
+  work(std::static_pointer_cast<const TreeIn<S>>(part.cast<const SharedTreeOf<TreeIn<S>>&>().state));
 }
 
-inline std::uint32_t add(SharedScene& shared, const py::object& part) {
+template <class S>
+std::uint32_t add(SharedScene<S>& shared, const py::object& part) {
   std::uint32_t number = 0;
-  with_part(part,
-            [&](const auto& tree) { change(shared, true, [&](Scene& scene) { number = scene.add(tree); }); });
+  with_part<S>(part,
+               [&](const auto& tree) { change(shared, true, [&](S& scene) { number = scene.add(tree); }); });
   return number;
 }
 
-inline std::uint32_t add_scene(SharedScene& shared, const SharedScene& other) {
+inline std::uint32_t add_scene(SharedScene<Scene>& shared, const SharedScene<Scene>& other) {
   const std::shared_ptr<const Scene> added = other.state;
   std::uint32_t number = 0;
   change(shared, is_quick(added->instance_count()), [&](Scene& scene) { number = scene.add(*added); });
   return number;
 }
 
-inline std::uint32_t add_mesh(SharedScene& shared, const py::array& vertices, const py::array& faces,
+// A mesh without a tree of its own.
+inline std::uint32_t add_mesh(SharedScene<Scene>& shared, const py::array& vertices, const py::array& faces,
                               int threads) {
   const auto of_vertices = vertices_of<float>(vertices);
   const IndexView of_faces = indices_of(faces);
@@ -94,19 +112,25 @@ inline std::uint32_t add_mesh(SharedScene& shared, const py::array& vertices, co
   return number;
 }
 
-inline void replace(SharedScene& shared, std::uint32_t geometry, const py::object& part) {
-  with_part(part, [&](const auto& tree) {
-    change(shared, true, [&](Scene& scene) { scene.replace(geometry, tree); });
+template <class S>
+void replace(SharedScene<S>& shared, std::uint32_t geometry, const py::object& part) {
+  with_part<S>(part, [&](const auto& tree) {
+    change(shared, true, [&](S& scene) { scene.replace(geometry, tree); });
   });
 }
 
-inline void refit_geometry(SharedScene& shared, std::uint32_t geometry, const py::array& vertices,
-                           const py::array& faces, int threads) {
-  const auto of_vertices = vertices_of<float>(vertices);
+template <class S>
+void refit_geometry(SharedScene<S>& shared, std::uint32_t geometry, const py::array& vertices,
+                    const py::array& faces, int threads) {
+  const auto of_vertices = vertices_of<typename SharedScene<S>::Number>(vertices);
   const IndexView of_faces = indices_of(faces);
   threads = usable_threads(threads);
-  change(shared, is_only_thread(),
-         [&](Scene& scene) { scene.refit(geometry, of_vertices, of_faces, threads); });
+  change(shared, is_only_thread(), [&](S& scene) {
+    if constexpr (has_floats<S>)
+      scene.refit(geometry, of_vertices, of_faces, threads);
+    else
+      scene.replace(geometry, scene.tree(geometry).refitted(of_vertices, of_faces, threads));
+  });
 }
 
 inline void require_as_many(std::size_t elements, std::size_t others) {
@@ -114,13 +138,14 @@ inline void require_as_many(std::size_t elements, std::size_t others) {
 }
 
 // Returns the first of the new instances, and how many numbers each of them takes, parts of an added scene among them.
-inline std::pair<std::size_t, std::size_t> place(SharedScene& shared, std::uint32_t geometry,
-                                                 const py::array& transforms, const py::array& masks) {
-  const auto of_transforms = records_of<Transform>(transforms);
+template <class S>
+std::pair<std::size_t, std::size_t> place(SharedScene<S>& shared, std::uint32_t geometry,
+                                          const py::array& transforms, const py::array& masks) {
+  const auto of_transforms = records_of<TransformIn<S>>(transforms);
   const auto of_masks = records_of<std::uint32_t>(masks);
   require_as_many(of_transforms.count, of_masks.count);
   std::size_t first = 0, end = 0;
-  change(shared, of_transforms.count == 1, [&](Scene& scene) {
+  change(shared, of_transforms.count == 1, [&](S& scene) {
     first = scene.instance_count();
     for (std::size_t i = 0; i < of_transforms.count; ++i)
       scene.place(geometry, of_transforms[i], of_masks[i]);
@@ -130,32 +155,40 @@ inline std::pair<std::size_t, std::size_t> place(SharedScene& shared, std::uint3
 }
 
 // Throws before anything changes.
-inline void require_instances(Scene& scene, const RayRecords<std::uint32_t>& instances) {
-  for (std::size_t i = 0; i < instances.count; ++i)
-    if (scene.levels_of(instances[i]).size() > 1) scene.set_moving(instances[i]);  // which refuses it
+template <class S>
+void require_instances(S& scene, const RayRecords<std::uint32_t>& instances) {
+  for (std::size_t i = 0; i < instances.count; ++i) {
+    if constexpr (has_floats<S>) {
+      if (scene.levels_of(instances[i]).size() > 1) scene.set_moving(instances[i]);  // which refuses it
+    } else {
+      static_cast<void>(scene.mask_of(instances[i]));
+    }
+  }
 }
 
-inline void move(SharedScene& shared, const py::array& instances, const py::array& transforms) {
+template <class S>
+void move(SharedScene<S>& shared, const py::array& instances, const py::array& transforms) {
   const auto of_instances = records_of<std::uint32_t>(instances);
-  const auto of_transforms = records_of<Transform>(transforms);
+  const auto of_transforms = records_of<TransformIn<S>>(transforms);
   require_as_many(of_instances.count, of_transforms.count);
-  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+  change(shared, is_quick(of_instances.count), [&](S& scene) {
     require_instances(scene, of_instances);
     for (std::size_t i = 0; i < of_instances.count; ++i) scene.move(of_instances[i], of_transforms[i]);
   });
 }
 
-inline void set_mask(SharedScene& shared, const py::array& instances, const py::array& masks) {
+template <class S>
+void set_mask(SharedScene<S>& shared, const py::array& instances, const py::array& masks) {
   const auto of_instances = records_of<std::uint32_t>(instances);
   const auto of_masks = records_of<std::uint32_t>(masks);
   require_as_many(of_instances.count, of_masks.count);
-  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+  change(shared, is_quick(of_instances.count), [&](S& scene) {
     require_instances(scene, of_instances);
     for (std::size_t i = 0; i < of_instances.count; ++i) scene.set_mask(of_instances[i], of_masks[i]);
   });
 }
 
-inline void set_moving(SharedScene& shared, const py::array& instances, bool moving) {
+inline void set_moving(SharedScene<Scene>& shared, const py::array& instances, bool moving) {
   const auto of_instances = records_of<std::uint32_t>(instances);
   change(shared, is_quick(of_instances.count), [&](Scene& scene) {
     require_instances(scene, of_instances);
@@ -163,7 +196,7 @@ inline void set_moving(SharedScene& shared, const py::array& instances, bool mov
   });
 }
 
-inline void set_triangle_masks(SharedScene& shared, std::uint32_t geometry, const py::array& masks) {
+inline void set_triangle_masks(SharedScene<Scene>& shared, std::uint32_t geometry, const py::array& masks) {
   const auto given = records_of<std::uint32_t>(masks);
   std::vector<std::uint32_t> words(given.count);
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = given[i];
@@ -176,9 +209,13 @@ inline bool is_quick_update(const Scene& scene) {
   constexpr std::size_t most = 1 << 13;  // triangles
   return is_quick(scene.instance_count()) && (scene.report().mesh_triangles <= most || is_only_thread());
 }
-inline void update(SharedScene& shared, int threads) {
+inline bool is_quick_update(const SceneD&) {
+  return is_only_thread();
+}
+template <class S>
+void update(SharedScene<S>& shared, int threads) {
   threads = usable_threads(threads);
-  change(shared, is_quick_update(*shared.state), [&](Scene& scene) { scene.update(threads); });
+  change(shared, is_quick_update(*shared.state), [&](S& scene) { scene.update(threads); });
 }
 
 }  // namespace raylanes::python

@@ -88,7 +88,7 @@ inline void take(TraceOptions& options, const TraceOptions& given) {
 inline void take(TraceOptionsD& options, const TraceOptions& given) {
   if (given.test != TriangleTest::exact)
     throw std::invalid_argument(
-        "test: a tree of float64 has \"exact\" alone; a tree made with dtype=numpy.float32 has the others");
+        "test: float64 has \"exact\" alone; a tree or scene made with dtype=numpy.float32 has the others");
   options.path = given.path, options.threads = given.threads;
   options.facing = given.facing, options.active = given.active, options.skip = given.skip;
   options.mask = given.mask, options.masks = given.masks, options.filter_mask = given.filter_mask;

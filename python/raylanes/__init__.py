@@ -6,7 +6,8 @@
     >>> hits.t, hits.u, hits.v, hits.primitive, hits.hit    # arrays, one element a ray
 
 A Bvh keeps the vertices that it is given: float64 and integers make a tree of float64, float32 one of float32, and
-`dtype` asks for another type. Rays, points and results have the type of the tree. Arrays of that type with a contiguous
+`dtype` asks for another type. So does a Scene by its first geometry. Rays, points and results have the type of the tree
+or scene. Arrays of that type with a contiguous
 last axis are read in place, with any positive stride of rows. Other arrays are converted. To float32, numbers are
 rounded to nearest (relative error 2^-24), and beyond 3.4e38 they become infinite, with NumPy's RuntimeWarning.
 
@@ -16,9 +17,10 @@ NumPy, no thread may write to an array while a call reads it.
 
 from ._arrays import (closest_point_dtype, containing_part_dtype, count_dtype, crossing_dtype,
                       double_closest_point_dtype, double_crossing_dtype, double_hit_dtype, double_ray_dtype,
-                      double_stretch_dtype, faces_of as _faces_of, hit_dtype, no_part, no_primitive, ray_dtype, rays,
-                      scene_closest_point_dtype, scene_crossing_dtype, scene_hit_dtype, scene_stretch_dtype, stand_ins
-                      as _stand_ins, stretch_dtype, volume_of as _volume_of)
+                      double_scene_closest_point_dtype, double_scene_crossing_dtype, double_scene_hit_dtype,
+                      double_scene_stretch_dtype, double_stretch_dtype, faces_of as _faces_of, hit_dtype, no_part,
+                      no_primitive, ray_dtype, rays, scene_closest_point_dtype, scene_crossing_dtype, scene_hit_dtype,
+                      scene_stretch_dtype, stand_ins as _stand_ins, stretch_dtype, volume_of as _volume_of)
 from ._meshes import MeshWarning, parts_of as _parts_of
 from ._native import __version__, closed_report as _closed_report
 from ._point_queries import INSIDE, ON, OUTSIDE
@@ -39,9 +41,10 @@ __all__ = [
     "SphereTree", "Stretch", "Stretches",
     "active_path", "closed_report", "closest_point_dtype", "containing_part_dtype", "count_dtype", "crossing_dtype",
     "double_closest_point_dtype", "double_crossing_dtype", "double_hit_dtype", "double_ray_dtype",
-    "double_stretch_dtype", "hit_dtype", "no_part", "no_primitive", "paths", "ray_dtype", "rays", "reciprocal", "rsqrt",
-    "scene_closest_point_dtype", "scene_crossing_dtype", "scene_hit_dtype", "scene_stretch_dtype", "sqrt",
-    "stretch_dtype", "use_path",
+    "double_scene_closest_point_dtype", "double_scene_crossing_dtype", "double_scene_hit_dtype",
+    "double_scene_stretch_dtype", "double_stretch_dtype", "hit_dtype", "no_part", "no_primitive", "paths", "ray_dtype",
+    "rays", "reciprocal", "rsqrt", "scene_closest_point_dtype", "scene_crossing_dtype", "scene_hit_dtype",
+    "scene_stretch_dtype", "sqrt", "stretch_dtype", "use_path",
 ]
 
 

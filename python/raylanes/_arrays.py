@@ -63,6 +63,25 @@ double_closest_point_dtype = np.dtype({
 scene_closest_point_dtype = np.dtype([*closest_point_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
 """The closest point of a scene: a closest_point_dtype in its space, and of what; no_part twice where there is none."""
 
+double_scene_hit_dtype = np.dtype({
+    "names": ["t", "u", "v", "primitive", "geometry", "instance"],
+    "formats": ["<f8", "<f8", "<f8", "<u4", "<u4", "<u4"], "itemsize": 40})
+"""A hit in a scene of float64; otherwise as scene_hit_dtype."""
+
+double_scene_crossing_dtype = np.dtype([*double_crossing_dtype.descr, ("geometry", "<u4"), ("instance", "<u4")])
+"""A crossing of the surface of an instance in a scene of float64; otherwise as scene_crossing_dtype."""
+
+double_scene_stretch_dtype = np.dtype({
+    "names": ["entry", "exit", "entered_by", "left_by", "winding", "geometry", "instance"],
+    "formats": ["<f8", "<f8", "<u4", "<u4", "<i4", "<u4", "<u4"], "offsets": [0, 8, 16, 20, 24, 32, 36],
+    "itemsize": 40})
+"""A stretch of a ray within an instance of a scene of float64; otherwise as scene_stretch_dtype."""
+
+double_scene_closest_point_dtype = np.dtype({
+    "names": ["distance_squared", "distance", "point", "u", "v", "primitive", "geometry", "instance"],
+    "formats": ["<f8", "<f8", ("<f8", 3), "<f8", "<f8", "<u4", "<u4", "<u4"], "itemsize": 72})
+"""The closest point of a scene of float64; otherwise as scene_closest_point_dtype."""
+
 containing_part_dtype = np.dtype({"names": ["geometry", "instance", "location"], "formats": ["<u4", "<u4", "u1"],
                                   "itemsize": 12})
 """An instance that contains a point: INSIDE or ON its surface; of none no_part twice, OUTSIDE."""
@@ -81,7 +100,10 @@ class Numbers(NamedTuple):
 FLOATS = Numbers(np.dtype(np.float32), ray_dtype, hit_dtype, crossing_dtype, stretch_dtype, closest_point_dtype)
 DOUBLES = Numbers(np.dtype(np.float64), double_ray_dtype, double_hit_dtype, double_crossing_dtype,
                   double_stretch_dtype, double_closest_point_dtype)
-SCENES = FLOATS._replace(hit=scene_hit_dtype, crossing=scene_crossing_dtype, stretch=scene_stretch_dtype)
+SCENES = FLOATS._replace(hit=scene_hit_dtype, crossing=scene_crossing_dtype, stretch=scene_stretch_dtype,
+                         closest_point=scene_closest_point_dtype)
+DOUBLE_SCENES = DOUBLES._replace(hit=double_scene_hit_dtype, crossing=double_scene_crossing_dtype,
+                                 stretch=double_scene_stretch_dtype, closest_point=double_scene_closest_point_dtype)
 
 
 def numbers_for(dtype, *arrays):

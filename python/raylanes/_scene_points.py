@@ -3,16 +3,16 @@
 import numpy as np
 
 from ._answer import Answer
-from ._arrays import (FLOATS, SCENES, containing_part_dtype, no_part, no_primitive, packed, rows,
-                      scene_closest_point_dtype)
+from ._arrays import DOUBLE_SCENES, SCENES, containing_part_dtype, no_part, no_primitive, packed, rows
 from ._point_queries import OUTSIDE
 from ._scalars import count, function, real, threads_of, word
-from ._scene_queries import EVERY_BIT
+from ._traces import EVERY_BIT, named_in_scene
 from .hits import Lists
 from .paths import chosen
 from .scene_hits import ContainingParts, SceneClosestPoints
 
-_nowhere = (np.inf, 0, 0, 0, no_primitive, no_part, no_part)
+_nowhere = {SCENES: (np.inf, 0, 0, 0, no_primitive, no_part, no_part),
+            DOUBLE_SCENES: (np.inf, np.inf, 0, 0, 0, no_primitive, no_part, no_part)}
 _in_none = (no_part, no_part, OUTSIDE)
 
 
@@ -56,8 +56,8 @@ class ScenePoints:
         >>> closest.distance, closest.instance, closest.primitive
         (array([3.]), array([0], dtype=uint32), array([0], dtype=uint32))
         """
-        answer = self._answer(points, out, active, scene_closest_point_dtype, _nowhere)
-        self._tree.closest_points(answer.given, answer.rows, real("max_distance", max_distance, FLOATS.real), chosen(),
+        answer = self._answer(points, out, active, self._numbers.closest_point, _nowhere[self._numbers])
+        self._tree.closest_points(answer.given, answer.rows, real("max_distance", max_distance, self.dtype), chosen(),
                                   threads_of(threads), answer.bits, function("progress", progress), _mask(mask))
         return answer.finish(SceneClosestPoints)
 
@@ -65,7 +65,7 @@ class ScenePoints:
         """Find out whether each point is inside an instance, outside of all or on the surface of one.
 
         A point on the surface of an instance and inside another one is INSIDE. Each instance decides exactly in its own
-        space, as Bvh.locate() does, for the point that is moved there and rounded to float32.
+        space, as Bvh.locate() does, for the point that is moved there and rounded to self.dtype.
 
         Parameters
         ----------
@@ -130,7 +130,7 @@ class ScenePoints:
 
         Returns
         -------
-        ndarray of float32
+        ndarray of self.dtype
             One number for each point.
 
         Examples
@@ -138,7 +138,7 @@ class ScenePoints:
         >>> scene.winding_numbers([[0, 0, -0.25], [0, 0, 0.25]]).round(3)
         array([ 0.324, -0.324], dtype=float32)
         """
-        answer = self._answer(points, out, active, FLOATS.real, 0)
+        answer = self._answer(points, out, active, self.dtype, 0)
         self._tree.winding_numbers(answer.given, answer.rows, real("accuracy", accuracy, np.float64), chosen(),
                                    threads_of(threads), answer.bits, function("progress", progress), _mask(mask))
         return answer.finish()
@@ -159,7 +159,7 @@ class ScenePoints:
 
         Returns
         -------
-        ndarray of float32
+        ndarray of self.dtype
             One distance for each point, rounded once.
 
         Examples
@@ -167,9 +167,9 @@ class ScenePoints:
         >>> scene.signed_distances([[0, 0, 3], [0, 0, 0]])
         array([3., 0.], dtype=float32)
         """
-        answer = self._answer(points, out, active, FLOATS.real, np.inf)
+        answer = self._answer(points, out, active, self.dtype, np.inf)
         self._tree.signed_distances(answer.given, answer.rows, word("rule", rule),
-                                    real("max_distance", max_distance, FLOATS.real), chosen(), threads_of(threads),
+                                    real("max_distance", max_distance, self.dtype), chosen(), threads_of(threads),
                                     answer.bits, function("progress", progress), _mask(mask))
         return answer.finish()
 
@@ -244,7 +244,7 @@ class ScenePoints:
         >>> scene.containing_parts([[0, 0, 0], [0, 0, 1]]).counts
         array([1, 0])
         """
-        given, shape = rows("points", points, 3, FLOATS.real)
+        given, shape = rows("points", points, 3, self.dtype)
         if len(shape) != 1:
             raise ValueError(f"points: lists are of points in two dimensions, the shape is {(*shape, 3)}")
         offsets, items = self._tree.containing_parts(given, word("rule", rule), chosen(), threads_of(threads),
@@ -255,7 +255,7 @@ class ScenePoints:
     def corners(self, hits):
         """Return the corners in the scene of the triangle of each hit, crossing or closest point.
 
-        They are moved to the scene in float64 and rounded once to float32. No trees or meshes are needed.
+        They are moved to the scene in float64 and rounded once to self.dtype. No trees or meshes are needed.
 
         Parameters
         ----------
@@ -264,7 +264,7 @@ class ScenePoints:
 
         Returns
         -------
-        ndarray of float32, shape (..., 3, 3)
+        ndarray of self.dtype, shape (..., 3, 3)
             NaN for misses, and for hits of spheres.
 
         Examples
@@ -289,7 +289,7 @@ class ScenePoints:
 
         Returns
         -------
-        ndarray of float32, shape (..., 3)
+        ndarray of self.dtype, shape (..., 3)
             NaN for misses, for hits of spheres, and for a triangle without an area.
 
         Examples
@@ -299,20 +299,14 @@ class ScenePoints:
         """
         return self._of_hits(hits, lambda names, out: self._tree.normals(names, out, threads_of(threads)), (3,))
 
-    @staticmethod
-    def _of_hits(hits, ask, shape):
-        given = np.asarray(hits)
-        if given.dtype.names is None or not {"primitive", "instance"} <= set(given.dtype.names):
-            raise TypeError(f"hits: records that name a primitive and an instance are needed, not {given.dtype}")
-        names = np.stack([given["primitive"].reshape(-1), given["instance"].reshape(-1)], axis=-1).astype(np.uint32)
-        out = np.empty((*given.shape, *shape), np.float32)
-        ask(names, out.reshape(-1))
+    def _of_hits(self, hits, ask, shape):
+        out = np.empty((*np.shape(hits), *shape), self.dtype)
+        ask(named_in_scene("hits", hits), out.reshape(-1))
         return out
 
-    @staticmethod
-    def _answer(points, out, active, dtype, initial):
+    def _answer(self, points, out, active, dtype, initial):
         """The answers of a call with points, and `given`, the rows of points, and `bits`, the mask of active ones."""
-        given, shape = rows("points", points, 3, SCENES.real)
+        given, shape = rows("points", points, 3, self.dtype)
         answer = Answer(out, shape, dtype, (given,), None if active is None else np.array(initial, dtype))
         answer.given, answer.bits = given, packed(active, shape)
         return answer

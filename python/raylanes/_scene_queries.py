@@ -1,9 +1,9 @@
 """Queries of scenes."""
 
-from ._arrays import SCENES, given_rays
+from ._arrays import given_rays
 from ._scalars import count
-from ._traces import (EVERY_BIT, counted, filter_of, hits_after, how, listed, nearest, shadows, shadows_from,
-                      shadows_towards, skipped_in_scene)
+from ._traces import (EVERY_BIT, counted, filter_of, hits_after, how, listed, named_in_scene, nearest, shadows,
+                      shadows_from, shadows_towards)
 from .scene_hits import SceneCrossings, SceneHits, SceneStretches
 
 
@@ -39,7 +39,7 @@ class SceneQueries:
             As in Bvh.closest(), for geometries of triangles.
         facing : {"any", "front", "back"}, default "any"
             The sides of triangles that count, in the space of their geometry. A scene with spheres has "any" alone.
-        skip : SceneHits, optional
+        skip : SceneHits, SceneCrossings or SceneClosestPoints, optional
             A primitive of an instance for each ray that is not there for it, such as the one that the ray begins on.
             A skipped sphere lacks the hit nearer to tmin alone. A miss leaves out none. The test must be "exact".
         threads : int, default 0
@@ -68,10 +68,10 @@ class SceneQueries:
         array([False])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
         bits_of_mask = _mask(mask)
-        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer), filter_of(filter, SceneHits)))
+        return nearest(self._numbers, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
+            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer), self._filter(filter)))
 
     def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                          after=None, out=None, active=None, facing="any", skip=None, threads=0, progress=None):
@@ -106,10 +106,11 @@ class SceneQueries:
         (array([ True]), array([False]))
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, skipped_in_scene(skip))
+        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, _skipped(skip))
         bits_of_mask = _mask(mask)
-        return nearest(SCENES, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest_crossing(
-            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer)))
+        return nearest(self._numbers, SceneHits, rays, out, active,
+                       lambda given, answer, bits: self._tree.closest_crossing(
+                           given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
                  out=None, active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",
@@ -135,10 +136,10 @@ class SceneQueries:
         array([False,  True])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
         bits_of_mask = _mask(mask)
-        return shadows(SCENES, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, asked, bits, bits_of_mask, filter_of(filter, SceneHits)))
+        return shadows(self._numbers, rays, out, active, lambda given, answers, bits: self._tree.occluded(
+            given, answers, asked, bits, bits_of_mask, self._filter(filter)))
 
     def occluded_from(self, origin, points, *, start=0.0, end=1.0, mask=EVERY_BIT, filter=None, out=None, active=None,
                       test="exact", grade="reproducible", mode="automatic", hint="none", facing="any", skip=None,
@@ -170,10 +171,11 @@ class SceneQueries:
         >>> scene.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
         bits_of_mask = _mask(mask)
-        return shadows_from(SCENES, origin, points, (start, end), out, active, lambda *given: self._tree.occluded_from(
-            *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
+        return shadows_from(self._numbers, origin, points, (start, end), out, active,
+                            lambda *given: self._tree.occluded_from(
+                                *given[:-1], asked, given[-1], bits_of_mask, self._filter(filter)))
 
     def occluded_towards(self, direction, points, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact",
                          grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
@@ -201,10 +203,10 @@ class SceneQueries:
         >>> scene.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, skipped_in_scene(skip))
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
         bits_of_mask = _mask(mask)
-        return shadows_towards(SCENES, direction, points, out, active, lambda *given: self._tree.occluded_from(
-            *given[:-1], asked, given[-1], bits_of_mask, filter_of(filter, SceneHits)))
+        return shadows_towards(self._numbers, direction, points, out, active, lambda *given: self._tree.occluded_from(
+            *given[:-1], asked, given[-1], bits_of_mask, self._filter(filter)))
 
     def all_hits(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                  max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
@@ -231,9 +233,9 @@ class SceneQueries:
         >>> scene.all_hits(raylanes.rays([[0, 0, 5], [9, 0, 5]], [0, 0, -1])).counts
         array([1, 0])
         """
-        rays = given_rays(rays, origins, directions, tmin, tmax)
-        return listed(self._tree.all_hits, SceneHits, SCENES, SCENES.hit, rays, max_count, facing, active, threads,
-                      progress, skipped_in_scene(skip), _mask(mask))
+        rays, kinds = given_rays(rays, origins, directions, tmin, tmax), self._numbers
+        return listed(self._tree.all_hits, SceneHits, kinds, kinds.hit, rays, max_count, facing, active, threads,
+                      progress, _skipped(skip), _mask(mask))
 
     def crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                   max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):
@@ -262,9 +264,9 @@ class SceneQueries:
         >>> crossings.side, crossings.instance
         (array([-1], dtype=int32), array([0], dtype=uint32))
         """
-        rays = given_rays(rays, origins, directions, tmin, tmax)
-        return listed(self._tree.crossings, SceneCrossings, SCENES, SCENES.crossing, rays, max_count, facing, active,
-                      threads, progress, skipped_in_scene(skip), _mask(mask))
+        rays, kinds = given_rays(rays, origins, directions, tmin, tmax), self._numbers
+        return listed(self._tree.crossings, SceneCrossings, kinds, kinds.crossing, rays, max_count, facing, active,
+                      threads, progress, _skipped(skip), _mask(mask))
 
     def stretches(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                   max_count=None, skip=None, active=None, threads=0, progress=None):
@@ -298,9 +300,9 @@ class SceneQueries:
         >>> within.entry, within.exit, within.instance
         (array([7.], dtype=float32), array([9.], dtype=float32), array([0], dtype=uint32))
         """
-        rays = given_rays(rays, origins, directions, tmin, tmax)
-        return listed(self._tree.stretches, SceneStretches, SCENES, SCENES.stretch, rays, max_count, "any", active,
-                      threads, progress, skipped_in_scene(skip), _mask(mask))
+        rays, kinds = given_rays(rays, origins, directions, tmin, tmax), self._numbers
+        return listed(self._tree.stretches, SceneStretches, kinds, kinds.stretch, rays, max_count, "any", active,
+                      threads, progress, _skipped(skip), _mask(mask))
 
     def count_crossings(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                         facing="any", skip=None, out=None, active=None, threads=0, progress=None):
@@ -331,8 +333,15 @@ class SceneQueries:
         array([-1], dtype=int32)
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        return counted(self._tree.count_crossings, SCENES, rays, out, facing, active, threads, progress,
-                       skipped_in_scene(skip), _mask(mask))
+        return counted(self._tree.count_crossings, self._numbers, rays, out, facing, active, threads, progress,
+                       _skipped(skip), _mask(mask))
+
+    def _filter(self, filter):
+        return filter_of(filter, SceneHits, self._numbers.hit)
+
+
+def _skipped(skip):
+    return None if skip is None else named_in_scene("skip", skip)
 
 
 def _mask(mask):

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _native
 from ._answer import Answer, overlap
-from ._arrays import count_dtype, packed, ray_rows, rows, scene_hit_dtype, unsigned, vertices_of
+from ._arrays import count_dtype, packed, ray_rows, rows, unsigned, vertices_of
 from ._scalars import count, function, real, threads_of, word
 from .hits import Lists
 from .paths import chosen
@@ -106,14 +106,12 @@ def skipped(skip):
     return np.ascontiguousarray(names, "<u4").reshape(-1)
 
 
-def skipped_in_scene(skip):
-    """A primitive and its instance for each ray."""
-    if skip is None:
-        return None
-    given = np.asarray(skip)
-    if given.dtype != scene_hit_dtype:
-        raise TypeError(f"skip: hits in scenes are needed, records of {scene_hit_dtype}, not {given.dtype}")
-    return np.stack([given["primitive"].reshape(-1), given["instance"].reshape(-1)], axis=-1)
+def named_in_scene(name, records):
+    """Rows of a primitive and its instance, which any records of scenes name."""
+    given = np.asarray(records)
+    if given.dtype.names is None or not {"primitive", "instance"} <= set(given.dtype.names):
+        raise TypeError(f"{name}: records that name a primitive and an instance are needed, not {given.dtype}")
+    return np.stack([given["primitive"].reshape(-1), given["instance"].reshape(-1)], axis=-1).astype(np.uint32)
 
 
 def hits_after(after, answer):
@@ -121,17 +119,17 @@ def hits_after(after, answer):
     if after is None:
         return None
     hits, dtype, shape = np.asarray(after), answer.array.dtype, answer.array.shape
-    if hits.dtype != dtype:
+    if hits.dtype.names != dtype.names or hits.dtype["t"] != dtype["t"]:
         raise TypeError(f"after: hits of this tree or scene are needed, records of {dtype}, not {hits.dtype}")
     if hits.shape != shape:
         raise ValueError(f"after: the shape must be {shape}, it is {hits.shape}")
     if after is answer.out:
         return answer.rows
-    hits = hits.reshape(-1)
+    hits = hits.reshape(-1).astype(dtype, copy=False)  # numpy.where() drops the padding of records
     return hits.copy() if overlap(hits, answer.rows) or hits.size > 1 > hits.strides[0] else hits
 
 
-def filter_of(filter, kind, dtype=None):
+def filter_of(filter, kind, dtype):
     """The filter as the native module calls it: with bytes, for bytes. kind, dtype: the class and the type of hits."""
     if filter is None:
         return None
@@ -140,7 +138,7 @@ def filter_of(filter, kind, dtype=None):
 
     def rejected(indices, hits):
         indices = indices.view(np.uintp).astype(np.int64)
-        answer = np.asarray(filter(indices, hits.view(dtype or scene_hit_dtype).view(kind)))
+        answer = np.asarray(filter(indices, hits.view(dtype).view(kind)))
         if answer.dtype != np.bool_:
             raise TypeError(f"filter: it must return booleans, not {answer.dtype}")
         if answer.shape != indices.shape:

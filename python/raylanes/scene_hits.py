@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._arrays import no_part, no_primitive, numbers, scene_hit_dtype
+from ._arrays import double_scene_hit_dtype, no_part, no_primitive, numbers, scene_hit_dtype
 from .hits import (ClosestPoint, ClosestPoints, Crossing, Crossings, HitNumbers, Hits, Records, Stretch, Stretches,
                    field_of)
 from .sphere_tree import SphereTree
@@ -122,7 +122,7 @@ class SceneHit(_SceneHitNumbers, np.void):
 
 
 class SceneHits(_SceneHitNumbers, Records):
-    """An array of scene_hit_dtype: the hits of a Scene.
+    """An array of scene_hit_dtype or double_scene_hit_dtype: the hits of a Scene.
 
     hits[mask] and hits["t"] work as in any array of records, and hits[i] is a SceneHit. The positions() are in the
     space of the scene.
@@ -137,7 +137,7 @@ class SceneCrossing(_InScene, Crossing):
 
 
 class SceneCrossings(_InScene, Crossings):
-    """An array of scene_crossing_dtype; crossings[i] is a SceneCrossing. A side is that in the instance's space."""
+    """An array of scene_crossing_dtype or double_scene_crossing_dtype; a side is that in the instance's space."""
 
     _record = SceneCrossing
 
@@ -147,7 +147,7 @@ class SceneStretch(_InScene, Stretch):
 
 
 class SceneStretches(_InScene, Stretches):
-    """An array of scene_stretch_dtype; stretches[i] is a SceneStretch."""
+    """An array of scene_stretch_dtype or double_scene_stretch_dtype; stretches[i] is a SceneStretch."""
 
     _record = SceneStretch
 
@@ -157,7 +157,7 @@ class SceneClosestPoint(_InScene, ClosestPoint):
 
 
 class SceneClosestPoints(_InScene, ClosestPoints):
-    """An array of scene_closest_point_dtype; points[i] is a SceneClosestPoint, in the space of the scene."""
+    """An array of scene_closest_point_dtype or double_scene_closest_point_dtype, in the space of the scene."""
 
     _record = SceneClosestPoint
 
@@ -182,7 +182,9 @@ class ContainingParts(_PartNumbers, Records):
 
 
 def _rows_of(hits):
-    return np.asarray(hits).astype(scene_hit_dtype, copy=False).reshape(-1)
+    rows = np.asarray(hits)
+    dtype = double_scene_hit_dtype if rows.dtype["t"] == np.float64 else scene_hit_dtype
+    return rows.astype(dtype, copy=False).reshape(-1)
 
 
 def _geometries_in(hits):

@@ -31,14 +31,14 @@ struct CallsOf;
   static constexpr auto locate = of##_locate;                       \
   static constexpr auto closest_points = of##_closest_points;       \
   static constexpr auto signed_distances = of##_signed_distances;   \
-  static constexpr auto winding_numbers = of##_winding_numbers
-// The functions that scenes of doubles lack: files, and stretches.
+  static constexpr auto winding_numbers = of##_winding_numbers;     \
+  static constexpr auto stretches = of##_stretches
+// The functions that scenes of doubles lack: files.
 #define RAYLANES_FILE_CALLS(of)                     \
   static constexpr auto save = of##_save;           \
   static constexpr auto save_file = of##_save_file; \
   static constexpr auto load = of##_load;           \
-  static constexpr auto load_file = of##_load_file; \
-  static constexpr auto stretches = of##_stretches
+  static constexpr auto load_file = of##_load_file
 // The functions that scenes share.
 #define RAYLANES_SCENE_CALLS(of)                                \
   static constexpr auto create = of##_create;                   \

@@ -75,14 +75,11 @@ struct QueriesOf {
   }
   // Lists are made, not written.
   static auto of_lists() {
-    const std::tuple all(query<void, ListOptions>("all_hits", C::all_hits, RAYLANES_METHOD(all_hits)),
-                         query<void, ListOptions>("crossings", C::crossings, RAYLANES_METHOD(crossings)));
-    if constexpr (requires { C::stretches; })
-      return std::tuple_cat(
-          all, std::tuple(query<void, ListOptions>(
-                   "stretches", C::stretches, [](auto&&... arguments) { return stretches(arguments...); })));
-    else
-      return all;
+    return std::tuple(query<void, ListOptions>("all_hits", C::all_hits, RAYLANES_METHOD(all_hits)),
+                      query<void, ListOptions>("crossings", C::crossings, RAYLANES_METHOD(crossings)),
+                      query<void, ListOptions>("stretches", C::stretches, [](auto&&... arguments) {
+                        return stretches(arguments...);
+                      }));
   }
 };
 #undef RAYLANES_METHOD

@@ -42,6 +42,7 @@ static_assert(has<RayView, 32, 8>);
 static_assert(has<SceneCrossing, 20, 4>);
 static_assert(has<SceneHit, 24, 4>);
 static_assert(has<SceneHitView, 24, 8>);
+static_assert(has<SceneStretchD, 40, 8>);
 static_assert(has<SegmentEnds, 8, 4>);
 static_assert(has<SegmentEndsD, 16, 8>);
 static_assert(has<SignedDistanceOptions, 56, 8>);

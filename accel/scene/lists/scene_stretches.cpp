@@ -1,43 +1,50 @@
 // Stretches of rays within the instances of a scene: the crossings of each instance's triangles, taken together.
-#include <tuple>
-
 #include "../../../dispatch/quiet_floats.hpp"
 #include "../../queries/stretches_of_crossings.hpp"
-#include "instance_lists.hpp"
+#include "../scene_parts.hpp"
 
 namespace raylanes {
+namespace {
 
-RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options) {
+template <class InScene, class AnyScene, class T>
+RayLists<InScene> stretches_in(const AnyScene& scene, const RayRecords<RayOf<T>>& rays,
+                               const ListOptions& options) {
+  using CrossingInScene = typename detail::QueryTypes<AnyScene>::Crossing;
   const QuietFloats quiet;
-  require_rays_of_stretches<float>(rays, options);
+  require_rays_of_stretches<T>(rays, options);
   require_skip("stretches", options.skip, rays.count);
-  require_triangles(scene, {});
-  const TraceOptions checked{
-      .path = options.path, .threads = options.threads, .skip = options.skip, .mask = options.mask};
-  const SceneQuery query = checked_query(TreeAccess::parts(scene), checked);
-  const std::vector<Ray> whole = rays_without_ends<float>(rays, options.active);
-  auto crossings = InstanceLists<Crossing>(query, whole, all_crossings(options)).find();
-  std::ranges::stable_sort(crossings, {}, [](const auto& c) { return std::tuple(c.ray, c.instance); });
-  RayLists<SceneStretch> lists;
+  const std::vector<RayOf<T>> whole = rays_without_ends<T>(rays, options.active);
+  auto crossings = scene.crossings(whole, all_crossings(options));
+  RayLists<InScene> lists;
   lists.offsets.reserve(rays.count + 1);
-  std::vector<Stretch> within;
-  for (std::size_t i = 0, at = 0; i < rays.count; ++i) {
-    for (std::size_t first = at; at < crossings.size() && crossings[at].ray == i; first = at) {
-      const std::uint32_t instance = crossings[at].instance;
-      while (at < crossings.size() && crossings[at].ray == i && crossings[at].instance == instance) ++at;
+  std::vector<StretchRecord<T>> within;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const std::span of_ray(crossings.items.data() + crossings.offsets[i],
+                           crossings.offsets[i + 1] - crossings.offsets[i]);
+    std::ranges::stable_sort(of_ray, {}, &CrossingInScene::instance);
+    for (auto first = of_ray.begin(), end = first; first != of_ray.end(); first = end) {
+      while (end != of_ray.end() && end->instance == first->instance) ++end;
       within.clear();
-      append_stretches<float>(std::span(std::as_const(crossings)).subspan(first, at - first), rays[i],
-                              whole.max_size(), within);
-      for (const Stretch& stretch : within)
-        lists.items.push_back({stretch, scene.geometry_of(instance), instance});
+      append_stretches<T>(std::span<const CrossingInScene>(first, end), rays[i], whole.max_size(), within);
+      for (const auto& stretch : within) lists.items.push_back({stretch, first->geometry, first->instance});
     }
     const auto begin = lists.items.begin() + static_cast<std::ptrdiff_t>(lists.offsets.back());
-    std::ranges::stable_sort(begin, lists.items.end(), {}, &SceneStretch::entry);
+    std::ranges::stable_sort(begin, lists.items.end(), {}, &InScene::entry);
     const std::size_t most = lists.offsets.back() + options.max_count;
     if (lists.items.size() > most) lists.items.resize(most);
     lists.offsets.push_back(lists.items.size());
   }
   return lists;
+}
+
+}  // namespace
+
+RayLists<SceneStretch> stretches(const Scene& scene, RayView rays, const ListOptions& options) {
+  require_triangles(scene, {});
+  return stretches_in<SceneStretch, Scene, float>(scene, rays, options);
+}
+RayLists<SceneStretchD> stretches(const SceneD& scene, RayViewD rays, const ListOptions& options) {
+  return stretches_in<SceneStretchD, SceneD, double>(scene, rays, options);
 }
 
 }  // namespace raylanes

@@ -6,11 +6,13 @@
 #define RECORD_ray raylanes_rayd
 #define RECORD_hit raylanes_scene_hit_d
 #define RECORD_crossing raylanes_scene_crossing_d
+#define RECORD_stretch raylanes_scene_stretch_d
 #define RECORD_closest_point raylanes_scene_closest_point_d
 #define KIND "scene"
 #define PART_TREE raylanes_bvhd
 #define PART(name) raylanes_bvhd_##name
 #include "scene_test.h"
+#include "tree_stretches.h"
 
 // A mesh is built when it is added, and a build that ends early adds none.
 static void test_builds(void) {
@@ -55,6 +57,7 @@ static void test_far_places(void) {
 void test_scenes_of_doubles(void) {
   raylanes_scene_d* const scene = scene_of_tetrahedron();
   test_scene(scene);
+  test_stretches(scene);
   raylanes_scene_d_destroy(scene);
   test_builds();
   test_far_places();

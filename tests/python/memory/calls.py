@@ -157,6 +157,40 @@ def calls_of_scenes():
     yield "SphereTree.occluded_from", lambda: spheres.occluded_from(points[0], points, threads=1).tobytes()
     yield "SphereTree.occluded", lambda: spheres.occluded(rays, threads=1).tobytes()
     yield "Scene(shared)", lambda: (saved(placed(tree)), saved(tree))
+    yield from calls_of_scenes_of_doubles()
+
+
+def calls_of_scenes_of_doubles():
+    tree = raylanes.Bvh(doubles, faces, threads=1)
+    scene = placed(tree)
+    hits = scene.closest(rays, threads=1)
+
+    def answered(of):
+        return of.closest(rays, threads=1).tobytes(), repr(of), of.bounds.tobytes(), of.transform_of([0, 1]).tobytes()
+
+    def rearranged(of):
+        of.move(0, np.eye(4)), of.set_mask([0, 1], [1, 2]), of.place(0, name="third")
+        of.refit(0, doubles[::-1], faces, threads=1), of.replace(of.add(doubles, faces, threads=1), tree)
+        of.update(threads=1)
+        return of
+
+    yield "Scene(float64)", lambda: answered(placed(tree))
+    yield "Scene(float64, changed)", lambda: answered(rearranged(placed(tree)))
+    yield "Scene(float64, copied)", lambda: answered(rearranged(copy.copy(scene)))
+    yield "Scene(float64).occluded", lambda: scene.occluded(rays, filter=even, threads=1).tobytes()
+    yield "Scene(float64).closest(after)", lambda: scene.closest(rays, after=hits, active=active, threads=1).tobytes()
+    yield "Scene(float64).closest(skip)", lambda: scene.closest(rays, skip=hits, filter=even, threads=1).tobytes()
+    yield "Scene(float64).occluded_from", lambda: scene.occluded_from(points[0], points, threads=1).tobytes()
+    yield "Scene(float64).closest_crossing", lambda: scene.closest_crossing(rays, threads=1).tobytes()
+    for call, of in ((scene.all_hits, rays), (scene.crossings, rays), (scene.stretches, rays),
+                     (scene.containing_parts, points)):
+        yield f"Scene(float64).{call.__name__}", lambda call=call, of=of: [
+            column.tobytes() for column in call(of, threads=1).columns().values()]
+    yield "Scene(float64).count_crossings", lambda: scene.count_crossings(rays, threads=1).tobytes()
+    for call in (scene.closest_points, scene.locate, scene.winding_numbers, scene.signed_distances,
+                 scene.innermost_parts):
+        yield f"Scene(float64).{call.__name__}", lambda call=call: call(points, threads=1).tobytes()
+    yield "Scene(float64).corners", lambda: (scene.corners(hits).tobytes(), scene.normals(hits, threads=1).tobytes())
 
 
 def even(indices, hits):
@@ -213,6 +247,7 @@ def native_calls():
     yield "_native.Bvh(progress)", lambda: _native.Bvh(
         vertices, faces, "binned_sah", 1, False, 0.0, abs).nbytes()
     yield from native_calls_of_scenes(tree)
+    yield from native_calls_of_scenes_of_doubles(_native.BvhD(of_doubles))
     yield "_native.closed_report", lambda: _native.closed_report(vertices, faces, 16)
     yield "_native.paths", lambda: (_native.paths(), _native.active_path(), _native.find_path("scalar"))
 
@@ -245,6 +280,26 @@ def native_calls_of_scenes(tree):
     yield "_native.SphereTree.reduce", lambda: spheres.__reduce_ex__(4)[1]
     yield "_native.SphereTree.reports", lambda: (spheres.bounds(), spheres.nbytes(), spheres.left_out(),
                                                  spheres.builder(), _native.SphereTree(spheres).nbytes())
+
+
+def native_calls_of_scenes_of_doubles(tree):
+    places, masks = np.tile(np.eye(4)[:3].reshape(12), (3, 1)), np.arange(3, dtype=np.uint32)
+    records = np.zeros((3, 13))
+
+    def made():
+        scene = _native.SceneD()
+        scene.add(tree), scene.place(0, places, masks), scene.update(1)
+        return scene
+
+    def after_changes(scene):
+        scene.move(masks, places), scene.set_mask(masks, masks), scene.replace(0, tree)
+        scene.refit(0, doubles, faces, 1), scene.update(1), scene.instances(masks, records)
+        return (scene.bounds(), scene.nbytes(), scene.instance_count(), records.tobytes(),
+                scene.levels_of(masks)[0].tobytes())
+
+    yield "_native.SceneD", lambda: made().nbytes()
+    yield "_native.SceneD(changed)", lambda: after_changes(made())
+    yield "_native.SceneD(scene)", lambda scene=made(): after_changes(_native.SceneD(scene))
 
 
 def first_calls():

@@ -21,17 +21,27 @@ def dyadic_transform(random):
     return np.column_stack([scaled, random.integers(-4, 5, 3) / 4])
 
 
-class Parts:
-    """Three lattices in several places, with a mask each, and rays that often meet corners and edges."""
+types = [np.float32, np.float64]
+far = 2.0 ** np.array([19, 22, 8]) + 2.0**-20  # as UTM coordinates are; floats are 0.25 apart there
 
-    def __init__(self, seed, instances=7):
+
+class Parts:
+    """Three lattices in several places, with a mask each, and rays that often meet corners and edges. Those of float64
+    are far away from zero, where no transform rounds them either."""
+
+    def __init__(self, seed, instances=7, dtype=np.float32):
         random = np.random.default_rng(seed)
-        self.meshes = [lattice(3 * seed + k, triangles=14)[:2] for k in range(3)]
-        self.rays = lattice(seed + 90, rays=70)[2]
-        self.rays["direction"] = np.round(self.rays["direction"] * 64) / 64  # which no transform here rounds
+        self.dtype, at = dtype, 0 if dtype == np.float32 else far
+        lattices = [lattice(3 * seed + k, triangles=14)[:2] for k in range(3)]
+        self.meshes = [(vertices.astype(dtype) + dtype(1) * at, faces) for vertices, faces in lattices]
+        rays = lattice(seed + 90, rays=70)[2]
+        self.rays = raylanes.rays(rays["origin"].astype(dtype) + at,
+                                  np.round(rays["direction"] * 64) / 64,  # which no transform here rounds
+                                  rays["tmin"], rays["tmax"], dtype=dtype)
         self.transforms = np.array([dyadic_transform(random) for _ in range(instances)])
         self.transforms[0] = np.eye(4)[:3]
         self.transforms[5] = self.transforms[2]  # in one place: the first instance counts
+        self.transforms[:, :, 3] += at - self.transforms[:, :, :3] @ (np.zeros(3) + at)
         self.geometries = np.array([0, 1, 2, 0, 1, 2, 0])[:instances]
         self.masks = (1 << (np.arange(instances) % 3)).tolist()
         self.trees = [raylanes.Bvh(*mesh) for mesh in self.meshes]
@@ -61,7 +71,7 @@ class Parts:
                 for of_ray, ray in zip(found, self.rays):
                     numbers = rational.hit(ray, corners)
                     if numbers:
-                        hit = *(rational.rounded(n) for n in numbers), primitive, geometry, instance
+                        hit = *(rational.rounded(n, self.dtype) for n in numbers), primitive, geometry, instance
                         of_ray.append((hit, self.side(ray, corners, instance)))
         return [sorted(of_ray, key=lambda h: (h[0][0], h[0][5], h[0][3])) for of_ray in found]
 

@@ -46,7 +46,8 @@ def test_places_are_numbered_and_told():
     scene.set_mask([[2], [3]], 9)
     assert scene.transform_of([3, 8, 9])[:, 0, 0].tolist() == [2, 1, 1]
     assert scene.transform_of(9)[0, 3] == 1 and scene.mask_of([2, 3, 4]).tolist() == [9, 9, 3]
-    assert re.fullmatch(r"<raylanes.Scene of 2 geometries in 10 instances, \d+ bytes without geometries>", repr(scene))
+    assert re.fullmatch(r"<raylanes.Scene of 2 geometries of float32 in 10 instances, \d+ bytes without geometries>",
+                        repr(scene))
     assert scene.nbytes > 1000
 
 
@@ -107,15 +108,15 @@ def test_what_is_refused_changes_nothing():
              (ValueError, "^transform: the fourth row must be 0, 0, 0, 1$", lambda: scene.move(0, np.ones((4, 4)))),
              (ValueError, "broadcast", lambda: scene.move([0, 1], np.zeros((3, 3, 4)))),
              (ValueError, "broadcast", lambda: scene.place(0, np.zeros((2, 3, 4)), mask=[1, 2, 3])),
-             (ValueError, "^tree: a scene has float32, this Bvh has float64; give it a Bvh made with "
+             (ValueError, "^tree: the scene has float32, this Bvh has float64; give it a Bvh made with "
                           "dtype=numpy.float32$", lambda: scene.add(doubles)),
-             (ValueError, "^tree: a scene has float32", lambda: scene.replace(0, doubles)),
+             (ValueError, "^tree: the scene has float32", lambda: scene.replace(0, doubles)),
              (TypeError, "^tree: a Bvh, a SphereTree or a mesh is needed, not KdTree$",
               lambda: scene.add(cube(raylanes.KdTree))),
              (TypeError, "^tree: a Bvh, a SphereTree or a mesh is needed, not Scene$",
               lambda: scene.replace(0, scene)),
              (ValueError, "triangles", lambda: scene.refit(0, cube_vertices, cube_faces[1:])),
-             (ValueError, "^vertices: float32 does not hold these float64 numbers; a scene has float32",
+             (ValueError, "^vertices: float32 does not hold these float64 numbers; the scene has float32: ",
               lambda: scene.refit(0, cube_vertices.astype(float) / 3, cube_faces)),
              (TypeError, "^after: hits of this tree or scene are needed",
               lambda: scene.closest(rays, after=cube().closest(rays))),

@@ -5,14 +5,14 @@ import pytest
 
 import raylanes
 from meshes import any_bits, cube_faces, cube_vertices, random_rays, sphere, supported
-from parts import Parts, miss, nearest, sphere_hits
+from parts import Parts, miss, nearest, sphere_hits, types
 
 
-@pytest.fixture(scope="module")
-def expected():
+@pytest.fixture(scope="module", params=types)
+def expected(request):
     """Parts with their scene and all hits, by the mask of the call."""
     return [(parts, parts.scene(), {mask: parts.hits(mask) for mask in (0xFFFFFFFF, 0b101, 0b1000)})
-            for parts in map(Parts, range(2))]
+            for parts in (Parts(seed, dtype=request.param) for seed in range(2))]
 
 
 def items(hits):
@@ -41,7 +41,7 @@ def test_hits_one_behind_the_other_are_all_hits(expected):
                 assert items(behind) == [h[depth] if depth < len(h) else miss for h in hits]
                 assert scene.closest(parts.rays, after=before, mask=mask, out=before) is before
             assert not before.hit.any()
-        first = np.full(len(parts.rays), np.array(miss, raylanes.scene_hit_dtype))
+        first = np.full(len(parts.rays), np.array(miss, before.dtype))
         first["t"], first["primitive"], first["instance"] = -np.inf, 0, 0
         assert items(scene.closest(parts.rays, after=first)) == nearest(by_mask[0xFFFFFFFF])
 
@@ -57,17 +57,18 @@ def test_sides_are_those_of_the_part(expected, facing):
 
 
 def test_shadows_from_a_point(expected):
-    for _, scene, _ in expected:
-        light, points = np.float32([3, 2, 1]), random_rays(7, 400)["origin"]
-        rays = raylanes.rays(points, light - points, 0.25, 0.75, dtype=np.float32)
+    for parts, scene, _ in expected:
+        dtype, middle = scene.dtype, parts.meshes[0][0].mean(axis=0)
+        light, points = np.array([3, 2, 1], dtype) + middle, random_rays(7, 400)["origin"] + middle
+        rays = raylanes.rays(points, light - points, 0.25, 0.75, dtype=dtype)
         for mask in (0xFFFFFFFF, 0b10):
             dark = scene.occluded_from(light, points, start=0.25, end=0.75, mask=mask)
             assert dark.tolist() == scene.occluded(rays, mask=mask).tolist() and 0 < dark.mean() < 1
-        sun = scene.occluded_towards(light, points)
-        assert sun.tolist() == scene.occluded(raylanes.rays(points, light, dtype=np.float32)).tolist() and sun.any()
+        sun = scene.occluded_towards([3, 2, 1], points)
+        assert sun.tolist() == scene.occluded(raylanes.rays(points, [3, 2, 1], dtype=dtype)).tolist() and sun.any()
         whole = scene.occluded_from(light, points.reshape(20, 20, 3))
         assert whole.tolist() == scene.occluded(raylanes.rays(points, light - points, 0, 1,
-                                                              dtype=np.float32)).reshape(20, 20).tolist()
+                                                              dtype=dtype)).reshape(20, 20).tolist()
 
 
 def test_a_place_without_a_transform_has_the_hits_of_its_tree():

@@ -5,27 +5,29 @@ import pytest
 
 import raylanes
 from meshes import cube, lattice
+from parts import types
 
 away = np.float32([[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0]])
 
 
-def scene_and_parts():
+def scene_and_parts(dtype=np.float32):
     """A scene, and (instance, mask, tree, shift of its rays): cubes in the common tree and out of it, and a lattice."""
     vertices, faces, rays = lattice(3)
     faces = faces[[len(set(face)) == 3 for face in faces.tolist()]]
-    cubes, grid = cube(), raylanes.Bvh(vertices, faces)
+    cubes, grid = cube(dtype=dtype), raylanes.Bvh(vertices, faces, dtype=dtype)
     scene = raylanes.Scene()
     parts = []
     for tree, transform, mask in ((cubes, None, 1), (grid, None, 2), (cubes, away, 3), (cubes, None, 4)):
         number = scene.place(scene.add(tree), transform, mask=mask)
         parts.append((number, mask, tree, 0 if transform is None else 3))
-    scene.set_moving(parts[3][0])
+    if dtype == np.float32:
+        scene.set_moving(parts[3][0])
     scene.update()
     random = np.random.default_rng(5)
     origins = random.integers(-3, 6, (200, 3))
     directions = random.integers(-2, 3, (200, 3)) * 0.5 + [0, 0, 0.25]
     rays = np.concatenate([rays, raylanes.rays(origins, directions, dtype=np.float32)])
-    return scene, parts, rays
+    return scene, parts, raylanes.rays(rays["origin"], rays["direction"], rays["tmin"], rays["tmax"], dtype=dtype)
 
 
 def expected(parts, rays, mask, list_of, place):
@@ -47,8 +49,9 @@ def found(lists, place):
 
 @pytest.mark.parametrize("mask", [0xFFFFFFFF, 2, 5])
 @pytest.mark.parametrize("facing", ["any", "front", "back"])
-def test_lists_are_those_of_all_instances(mask, facing):
-    scene, parts, rays = scene_and_parts()
+@pytest.mark.parametrize("dtype", types)
+def test_lists_are_those_of_all_instances(mask, facing, dtype):
+    scene, parts, rays = scene_and_parts(dtype)
     hits = scene.all_hits(rays, mask=mask, facing=facing)
     assert isinstance(hits.items, raylanes.SceneHits) and len(hits.items) > 100
     # In the order of t, instance, primitive.
@@ -69,8 +72,9 @@ def test_lists_are_those_of_all_instances(mask, facing):
     assert geometry.tolist() == crossings.items.geometry.tolist()
 
 
-def test_stretches_name_their_instance():
-    scene, parts, rays = scene_and_parts()
+@pytest.mark.parametrize("dtype", types)
+def test_stretches_name_their_instance(dtype):
+    scene, parts, rays = scene_and_parts(dtype)
     within = scene.stretches(rays, mask=5)
     assert isinstance(within.items, raylanes.SceneStretches) and len(within.items) > 50
     wanted = expected(parts, rays, 5, lambda tree, moved: tree.stretches(moved), "entry")
@@ -79,8 +83,9 @@ def test_stretches_name_their_instance():
     assert isinstance(first, raylanes.SceneStretch) and first.instance == within.items["instance"][0]
 
 
-def test_active_and_skipped_rays():
-    scene, _, rays = scene_and_parts()
+@pytest.mark.parametrize("dtype", types)
+def test_active_and_skipped_rays(dtype):
+    scene, _, rays = scene_and_parts(dtype)
     hits = scene.all_hits(rays)
     nearest = scene.closest(rays)
     assert [items.tolist() for items in scene.all_hits(rays, skip=nearest)] == [items.tolist()[1:] for items in hits]

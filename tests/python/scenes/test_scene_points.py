@@ -5,16 +5,18 @@ import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, same
+from parts import types
 
 INSIDE, ON, OUTSIDE = raylanes.INSIDE, raylanes.ON, raylanes.OUTSIDE
+typed = pytest.mark.parametrize("dtype", types)
 
 
-def shells():
+def shells(dtype=np.float32):
     """Cubes of half sides 1, 2 and 4 around zero, the last one a mesh; and one of 1 at 6, stretched to 2 along z."""
     scene = raylanes.Scene()
-    part = scene.add(cube())
+    part = scene.add(cube(dtype=dtype))
     scene.place(part, [np.eye(4), np.diag([2, 2, 2, 1])])
-    scene.place(scene.add(4 * cube_vertices, cube_faces), mask=2)
+    scene.place(scene.add(4 * cube_vertices.astype(dtype), cube_faces), mask=2)
     stretched = np.diag([1.0, 1, 2, 1])
     stretched[0, 3] = 6
     scene.place(part, stretched)
@@ -22,14 +24,15 @@ def shells():
     return scene
 
 
-def test_closest_points_are_in_the_space_of_the_scene():
-    scene = shells()
+@typed
+def test_closest_points_are_in_the_space_of_the_scene(dtype):
+    scene = shells(dtype)
     closest = scene.closest_points([[0, 0, 1.25], [0, 3.5, 0], [6, 0, 3], [np.nan, 0, 0]])
     assert isinstance(closest, raylanes.SceneClosestPoints)
     assert closest.distance.tolist() == [0.25, 0.5, 1, np.inf]
     assert closest.instance.tolist() == [0, 2, 3, raylanes.no_part]
     assert closest.geometry.tolist() == [0, 1, 0, raylanes.no_part]
-    assert closest.point[2].tolist() == [6, 0, 2]
+    assert closest.point[2].tolist() == [6, 0, 2] and closest.point.dtype == closest.u.dtype == dtype
     assert isinstance(closest[0], raylanes.SceneClosestPoint) and int(closest[1].instance) == 2
     hidden = scene.closest_points([[0, 3.5, 0]], mask=1)
     assert hidden.distance.tolist() == [1.5] and hidden.instance.tolist() == [1]
@@ -38,9 +41,10 @@ def test_closest_points_are_in_the_space_of_the_scene():
     assert scene.closest_points(np.zeros((0, 3))).shape == (0,)
 
 
-def test_one_part_is_its_tree():
-    points = np.random.default_rng(5).uniform(-3, 3, (2000, 3)).astype(np.float32)
-    tree, scene = cube(), raylanes.Scene()
+@typed
+def test_one_part_is_its_tree(dtype):
+    points = np.random.default_rng(5).uniform(-3, 3, (2000, 3)).astype(dtype)
+    tree, scene = cube(dtype=dtype), raylanes.Scene()
     scene.place(scene.add(tree))
     scene.update()
     closest, expected = scene.closest_points(points), tree.closest_points(points)
@@ -52,8 +56,9 @@ def test_one_part_is_its_tree():
     assert same(scene.inside(points), tree.inside(points))
 
 
-def test_parts_are_named_innermost_first():
-    scene = shells()
+@typed
+def test_parts_are_named_innermost_first(dtype):
+    scene = shells(dtype)
     points = [[0, 0, 0], [0.5, 1, 0.25], [0, 1.5, 0], [3, 0, 0], [6, 0, 1.5], [9, 9, 9]]
     parts = scene.innermost_parts(points)
     assert isinstance(parts, raylanes.ContainingParts)
@@ -77,9 +82,10 @@ def test_parts_are_named_innermost_first():
     assert heard[-1] == 1
 
 
-def test_neighbours_share_faces():
+@typed
+def test_neighbours_share_faces(dtype):
     scene = raylanes.Scene()
-    part = scene.add(cube())
+    part = scene.add(cube(dtype=dtype))
     places = np.array([np.eye(4)] * 2)
     places[1, 0, 3] = 2
     scene.place(part, places)
@@ -89,12 +95,13 @@ def test_neighbours_share_faces():
     assert lists[0].location.tolist() == [ON, ON]
 
 
-def test_corners_and_normals_need_no_trees():
-    scene = shells()
+@typed
+def test_corners_and_normals_need_no_trees(dtype):
+    scene = shells(dtype)
     rays = raylanes.rays([[0, 0, 9], [6, 0, 9], [20, 0, 9]], [0, 0, -1])
     hits = scene.closest(rays)
     corners = scene.corners(hits)
-    assert corners.shape == (3, 3, 3) and corners.dtype == np.float32
+    assert corners.shape == (3, 3, 3) and corners.dtype == scene.normals(hits).dtype == dtype
     assert np.isnan(corners[2]).all() and (corners[0, :, 2] == 4).all() and (corners[1, :, 2] == 2).all()
     assert scene.normals(hits)[:2].tolist() == [[0, 0, 1], [0, 0, 1]]
     assert scene.corners(hits[0]).shape == (3, 3) and scene.normals(hits[:0]).shape == (0, 3)

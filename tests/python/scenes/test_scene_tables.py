@@ -9,7 +9,7 @@ import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, random_rays
-from parts import Parts
+from parts import Parts, types
 
 pandas = None
 try:
@@ -18,9 +18,9 @@ except ImportError:
     pass
 
 
-def scene_of_names():
+def scene_of_names(dtype=np.float32):
     scene = raylanes.Scene()
-    scene.add(cube_vertices, cube_faces)
+    scene.add(cube_vertices.astype(dtype), cube_faces)
     shifts = np.zeros((3, 3, 4)) + np.eye(4)[:3]
     shifts[:, 0, 3] = [0, 5, 10]
     scene.place(0, shifts, name=["left", "middle", "left"])
@@ -30,8 +30,9 @@ def scene_of_names():
     return scene
 
 
-def test_hits_have_the_names_of_their_instances():
-    scene = scene_of_names()
+@pytest.mark.parametrize("dtype", types)
+def test_hits_have_the_names_of_their_instances(dtype):
+    scene = scene_of_names(dtype)
     names = np.array(["left", "middle", "left", "", "behind", ""])
     rays = random_rays(5, 2000, reach=6)
     rays["origin"][:, 0] += 5
@@ -78,26 +79,32 @@ def test_wrong_names_are_refused():
     assert scene.instance_count == 5 and scene.instances_named("a").size == 0
 
 
-def test_a_mesh_replaces_a_geometry():
-    scene = scene_of_names()
+@pytest.mark.parametrize("dtype", types)
+def test_a_mesh_replaces_a_geometry(dtype):
+    scene = scene_of_names(dtype)
     rays = random_rays(6, 500, reach=5)
     vertices = cube_vertices * np.float32(0.5)
     scene.replace(0, vertices, cube_faces, threads=1)
     scene.update()
-    other = scene_of_names()
-    other.replace(0, raylanes.Bvh(vertices, cube_faces))
+    other = scene_of_names(dtype)
+    other.replace(0, raylanes.Bvh(vertices, cube_faces, dtype=dtype))
     other.update()
     assert scene.closest(rays).tobytes() == other.closest(rays).tobytes() and scene.closest(rays).hit.any()
+    if dtype == np.float64:
+        return
     with pytest.raises(ValueError, match="float32 does not hold"):
         scene.replace(0, cube_vertices.astype(float) / 3, cube_faces)
 
 
 def tables():
-    parts = Parts(3)
-    scene, tree, doubles = parts.scene(), cube(), raylanes.Bvh(cube_vertices.astype(float), cube_faces)
+    tree, doubles, site = cube(), raylanes.Bvh(cube_vertices.astype(float), cube_faces), scene_of_names(float)
     rays = random_rays(7, 300, reach=3)
-    yield scene.closest(rays), ["t", "u", "v", "primitive", "geometry", "instance"]
-    yield scene.crossings(rays).items, ["t", "primitive", "side", "geometry", "instance"]
+    for scene in (Parts(3).scene(), site):
+        yield scene.closest(rays), ["t", "u", "v", "primitive", "geometry", "instance"]
+        yield scene.crossings(rays).items, ["t", "primitive", "side", "geometry", "instance"]
+    yield site.stretches(rays).items, ["entry", "exit", "entered_by", "left_by", "winding", "geometry", "instance"]
+    yield site.closest_points(rays["origin"]), ["distance_squared", "distance", "point_x", "point_y", "point_z", "u",
+                                                "v", "primitive", "geometry", "instance"]
     yield tree.closest(rays.reshape(20, 15)), ["t", "u", "v", "primitive"]
     yield doubles.closest(rays), ["t", "u", "v", "primitive"]
     yield doubles.stretches(rays).items, ["entry", "exit", "entered_by", "left_by", "winding"]
@@ -107,7 +114,7 @@ def tables():
                                                    "v", "primitive"]
 
 
-@pytest.mark.parametrize("number", range(7))
+@pytest.mark.parametrize("number", range(11))
 def test_records_are_columns(number):
     records, names = list(tables())[number]
     columns = records.columns()

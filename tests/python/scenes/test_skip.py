@@ -5,6 +5,7 @@ import pytest
 
 import raylanes
 from meshes import cube, lattice
+from parts import types
 
 kinds = [(raylanes.Bvh, np.float32), (raylanes.Bvh, np.float64), (raylanes.KdTree, np.float32)]
 
@@ -50,15 +51,14 @@ def test_a_point_does_not_shadow_itself():
     assert tree.occluded_from([0.1, 0.2, 0], [below], end=0.999).tolist() == [False]
 
 
-def test_skip_in_scenes_names_an_instance():
+@pytest.mark.parametrize("dtype", types)
+def test_skip_in_scenes_names_an_instance(dtype):
     scene = raylanes.Scene()
-    part = scene.add(cube())
+    part = scene.add(cube(dtype=dtype))
     scene.place(part)
     away = np.eye(4)
     away[2, 3] = -5
     scene.place(part, away)
-    ball = scene.add(raylanes.SphereTree([[0, 0, -20]], 1))
-    scene.place(ball)
     scene.update()
     rays = raylanes.rays([[0.1, 0.2, 5]], [0, 0, -1])
     hits = scene.closest(rays)
@@ -67,14 +67,21 @@ def test_skip_in_scenes_names_an_instance():
     other = hits.copy()
     other["instance"] = 1
     assert scene.closest(rays, skip=other).t[0] == 4
+    for named in (hits.astype(raylanes.scene_hit_dtype), scene.crossings(rays, max_count=1).items):
+        assert scene.closest(rays, skip=named).t[0] == 6
+    for wrong in (hits.primitive, cube(dtype=dtype).closest(rays)):
+        with pytest.raises(TypeError, match="^skip: records that name a primitive and an instance are needed, not "):
+            scene.closest(rays, skip=wrong)
+    if dtype == np.float64:
+        return
+    scene.place(scene.add(raylanes.SphereTree([[0, 0, -20]], 1)))
+    scene.update()
     below = raylanes.rays([[0, 0, -19]], [0, 0, -1])
     on_ball = scene.closest(below)
     # A skipped sphere keeps the hit at which the ray leaves it.
     assert on_ball.instance[0] == 2 and on_ball.t[0] == 0 and scene.closest(below, skip=on_ball).t[0] == 2
     above = raylanes.rays([[0, 0, -19]], [0, 0, 1], tmax=1)
     assert scene.occluded(above).tolist() == [True] and scene.occluded(above, skip=on_ball).tolist() == [False]
-    with pytest.raises(TypeError, match="skip: hits in scenes are needed"):
-        scene.closest(rays, skip=hits.primitive)
 
 
 def test_skip_of_spheres():
