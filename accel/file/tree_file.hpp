@@ -27,7 +27,15 @@ KdTreeArrays load_cells(std::istream& file);
 
 // --- The common parts.
 // The kind of the object in a file.
-enum class FileKind : std::uint8_t { bvh, bvh_of_doubles, kd_tree, scene, nested_scene };
+enum class FileKind : std::uint8_t {
+  bvh,
+  bvh_of_doubles,
+  kd_tree,
+  scene,
+  nested_scene,
+  scene_of_doubles,
+  nested_scene_of_doubles
+};
 
 struct FilePart {
   const void* bytes;

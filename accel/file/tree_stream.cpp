@@ -38,9 +38,13 @@ constexpr KindOfFile kind_named(const char (&word)[5], const char* name) {
       name};
 }
 // Indexed by FileKind.
-constexpr KindOfFile kinds[] = {kind_named("tree", "Bvh"), kind_named("doub", "BvhD"),
-                                kind_named("cell", "KdTree"), kind_named("scen", "Scene"),
-                                kind_named("nest", "scene in a Scene")};
+constexpr KindOfFile kinds[] = {kind_named("tree", "Bvh"),
+                                kind_named("doub", "BvhD"),
+                                kind_named("cell", "KdTree"),
+                                kind_named("scen", "Scene"),
+                                kind_named("nest", "scene in a Scene"),
+                                kind_named("scnd", "SceneD"),
+                                kind_named("nesd", "scene in a SceneD")};
 const KindOfFile& info_of(FileKind kind) {
   return kinds[static_cast<std::size_t>(kind)];
 }

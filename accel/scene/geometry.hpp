@@ -29,7 +29,9 @@ struct GeometryRecord {
 };
 enum GeometryKind : std::uint32_t { triangle_geometry, sphere_geometry, nested_scene };
 
-class NestedScene;
+struct Instance;
+template <class AnyInstance>
+class NestedInstances;
 
 class Geometry {
  public:
@@ -53,7 +55,7 @@ class Geometry {
   // call it.
   double volume() const;
   // The same if it is a scene; else null.
-  virtual const NestedScene* nested() const { return nullptr; }
+  virtual const NestedInstances<Instance>* nested() const { return nullptr; }
   // Throws std::invalid_argument if it cannot be asked with these options.
   virtual void require(const TraceOptions&) const {}
   // Whether the numbers of a hit depend on where rays end: then the rays keep their own ends, and batch.tmax has the
@@ -80,6 +82,5 @@ std::unique_ptr<Geometry> geometry_of_triangles(std::shared_ptr<const Bvh> tree)
 // From the spheres of its record and from what save() wrote. Throw as Scene::load.
 std::unique_ptr<Geometry> load_triangles(std::span<const Sphere> spheres, std::istream& file);
 std::unique_ptr<Geometry> load_spheres(std::span<const Sphere> spheres, std::istream& file);
-std::unique_ptr<Geometry> load_nested(std::span<const Sphere> spheres, std::istream& file);
 
 }  // namespace raylanes

@@ -73,4 +73,23 @@ struct InstanceBounds {
 };
 InstanceBounds bounds_of(const Instance& instance, const Box& part, float slack);
 
+// The product of two maps, `inner` first: each number is computed by numbers of type Wide and then rounded.
+template <class Wide, class AnyTransform, class Round>
+AnyTransform product_of(const AnyTransform& outer, const AnyTransform& inner, const Round& round) {
+  AnyTransform product;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& row = outer.row[i];
+    for (std::size_t j = 0; j < 4; ++j) {
+      const auto term = [&](std::size_t k) { return Wide{row[k]} * Wide{inner.row[k][j]}; };
+      const Wide linear = (term(0) + term(1)) + term(2);
+      product.row[i][j] = round(j == 3 ? linear + Wide{row[3]} : linear);
+    }
+  }
+  return product;
+}
+// As Scene::place() says.
+inline Transform composed(const Transform& outer, const Transform& inner) {
+  return product_of<double>(outer, inner, float_or_infinity);
+}
+
 }  // namespace raylanes

@@ -2,7 +2,6 @@
 
 #include "../../dispatch/checked.hpp"
 #include "../../dispatch/quiet_floats.hpp"
-#include "nested/nested_scene.hpp"
 #include "scene_parts.hpp"
 
 namespace raylanes {
@@ -61,28 +60,6 @@ const SceneParts no_parts;
 
 }  // namespace
 
-void SceneParts::replace(std::uint32_t number, std::shared_ptr<Geometry> geometry) {
-  auto& replaced = at("geometry", geometries, number);
-  if (replaced->nested() != nullptr)
-    throw std::invalid_argument("scene: geometry " + std::to_string(number) +
-                                " is a scene, which nothing replaces");
-  replaced = std::move(geometry);
-  if (number < words.size()) words[number] = nullptr;
-  has_changed(number);
-}
-std::span<Instance> SceneParts::placed(std::uint32_t instance) {
-  const Instance& placed = at("instance", instances, instance);
-  if (placed.placer != no_part) {
-    std::uint32_t placer = placed.placer;
-    while (instances[placer].placer != no_part) placer = instances[placer].placer;
-    throw std::invalid_argument("scene: instance " + std::to_string(instance) +
-                                " is part of the scene that instance " + std::to_string(placer) +
-                                " places, which changes as a whole");
-  }
-  const NestedScene* const scene = geometries[placed.geometry]->nested();
-  return std::span(instances).subspan(instance, scene != nullptr ? 1 + scene->size() : 1);
-}
-
 Scene::Scene() : parts_(std::make_unique<SceneParts>()) {}
 const SceneParts& Scene::parts() const noexcept {
   return parts_ ? *parts_ : no_parts;
@@ -109,45 +86,22 @@ std::size_t Scene::geometry_count() const noexcept {
 
 std::uint32_t Scene::place(std::uint32_t geometry, const Transform& transform, std::uint32_t mask) {
   const QuietFloats quiet;
-  SceneParts& parts = changed();
-  const NestedScene* const scene = at("geometry", parts.geometries, geometry)->nested();
-  const std::size_t members = scene != nullptr ? scene->size() : 0;
-  const std::uint32_t number = next_number("instances", parts.instances, 1 + members);
-  std::vector<Instance>& all = parts.instances;
-  if (const std::size_t size = number + 1 + members; size > all.capacity())
-    all.reserve(std::max(size, 2 * all.capacity()));
-  const Instance placed = all.emplace_back(geometry, transform, mask);
-  for (std::size_t i = 0; i < members; ++i) all.push_back(scene->member(placed, number, i));
-  parts.is_current = false;
-  return number;
+  return changed().place(geometry, transform, mask);
 }
 void Scene::move(std::uint32_t instance, const Transform& transform) {
   const QuietFloats quiet;
-  SceneParts& parts = changed();
-  const std::span<Instance> all = parts.placed(instance);
-  const NestedScene* const scene = parts.geometries[all[0].geometry]->nested();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Standing standing = left(all[i].standing);
-    all[i] =
-        i == 0 ? Instance(all[0].geometry, transform, all[0].mask) : scene->member(all[0], instance, i - 1);
-    all[i].standing = standing;
-  }
-  parts.is_current = false;
+  changed().move(instance, transform);
 }
 void Scene::set_moving(std::uint32_t instance, bool moving) {
-  for (Instance& placed : changed().placed(instance))
-    if (moving)
-      placed.standing = Standing::apart;
-    else if (placed.standing == Standing::apart)
-      placed.standing = Standing::added;
+  changed().set_moving(instance, moving);
 }
 void Scene::set_mask(std::uint32_t instance, std::uint32_t mask) {
   const QuietFloats quiet;
   SceneParts& parts = changed();
   const std::span<Instance> all = parts.placed(instance);
   if (all[0].mask == mask) return;
-  const NestedScene* const scene = parts.geometries[all[0].geometry]->nested();
-  const auto new_mask = [&](std::size_t i) { return i == 0 ? mask : mask & scene->mask(i - 1); };
+  const NestedInstances<Instance>* const scene = parts.geometries[all[0].geometry]->nested();
+  const auto new_mask = [&](std::size_t i) { return i == 0 ? mask : scene->mask(i - 1, mask); };
   bool leave = false;  // the common trees, together
   for (std::size_t i = 1; i < all.size() && !leave; ++i)
     leave = all[i].mask != new_mask(i) && common_tree_of(parts, instance + static_cast<std::uint32_t>(i));

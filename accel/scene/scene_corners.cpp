@@ -54,26 +54,13 @@ class NamedTrianglesD {
   std::vector<CornersOf<double>> corners_;
 };
 
-// The types of scenes, by their parts.
-template <class Parts>
-struct TypesOfParts {
-  using Named = NamedTriangles;
-  using AnyTriangle = Triangle;
-  using AnyInstance = Instance;
-};
-template <>
-struct TypesOfParts<SceneDParts> {
-  using Named = NamedTrianglesD;
-  using AnyTriangle = TriangleD;
-  using AnyInstance = InstanceD;
-};
-
 // The triangles of the geometries that are hit.
 template <class Parts>
 class HitTriangles {
-  using Types = TypesOfParts<Parts>;
-
  public:
+  using Named = std::conditional_t<std::is_same_v<Parts, SceneParts>, NamedTriangles, NamedTrianglesD>;
+  using AnyTriangle = std::conditional_t<std::is_same_v<Parts, SceneParts>, Triangle, TriangleD>;
+
   HitTriangles(const Parts& scene, const PrimitiveView& hits)
       : scene_(scene), of_geometry_(scene.geometries.size()) {
     for (std::size_t i = 0; i < hits.count; ++i) {
@@ -84,16 +71,15 @@ class HitTriangles {
     }
   }
   // The instance and the triangle of a hit; null if it names none.
-  const typename Types::AnyInstance* find(std::uint32_t instance, std::uint32_t primitive,
-                                          typename Types::AnyTriangle& triangle) const {
-    if (instance >= scene_.instances.size()) return nullptr;
-    const auto& hit = scene_.instances[instance];
-    return of_geometry_[hit.geometry]->find(primitive, triangle) ? &hit : nullptr;
+  auto find(std::uint32_t instance, std::uint32_t primitive, AnyTriangle& triangle) const {
+    const auto& instances = scene_.instances;
+    const auto* const hit = instance < instances.size() ? &instances[instance] : nullptr;
+    return hit != nullptr && of_geometry_[hit->geometry]->find(primitive, triangle) ? hit : nullptr;
   }
 
  private:
   const Parts& scene_;
-  std::vector<std::optional<typename Types::Named>> of_geometry_;
+  std::vector<std::optional<Named>> of_geometry_;
 };
 
 // write(result, instance or null, triangle) for each hit.
@@ -112,7 +98,7 @@ void each_hit(const char* call, const char* what, const Parts& scene, PrimitiveV
   in_parallel(hits.count, grain_of(hits.count, threads, 4, 1024), threads,
               [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
-                  typename TypesOfParts<Parts>::AnyTriangle triangle;
+                  typename HitTriangles<Parts>::AnyTriangle triangle;
                   const auto* const instance = triangles.find(hits.instance(i), hits[i], triangle);
                   write(results[i], instance, triangle);
                 }

@@ -6,6 +6,7 @@
 #include "../../dispatch/quiet_floats.hpp"
 #include "../file/tree_file.hpp"
 #include "../queries/traced_tree.hpp"
+#include "doubles/scene_d_parts.hpp"
 #include "nested/nested_scene.hpp"
 #include "scene_parts.hpp"
 
@@ -17,46 +18,82 @@ constexpr std::uint32_t format_version = 1;
 struct Header {
   std::uint64_t geometries, instances, spheres;
 };
+template <class AnyTransform>
 struct InstanceRecord {
   std::uint32_t geometry, mask;
-  Transform transform;
+  TransformWords<AnyTransform> transform;
 };
-static_assert(sizeof(Header) == 24 && sizeof(GeometryRecord) == 8 && sizeof(InstanceRecord) == 56 &&
+static_assert(sizeof(Header) == 24 && sizeof(GeometryRecord) == 8 &&
+                  sizeof(InstanceRecord<Transform>) == 56 && sizeof(InstanceRecord<TransformD>) == 104 &&
                   sizeof(Sphere) == 16,
               "no padding");
 
-// Indexed by GeometryRecord::kind.
-constexpr struct {
-  std::unique_ptr<Geometry> (*load)(std::span<const Sphere> spheres, std::istream& file);
+template <class AnyGeometry>
+struct KindOfGeometry {
+  std::unique_ptr<AnyGeometry> (*load)(std::span<const Sphere> spheres, std::istream& file);
   bool has_spheres;
-} kinds[] = {{load_triangles, false}, {load_spheres, true}, {load_nested, false}};
+};
+std::unique_ptr<Geometry> load_nested(std::span<const Sphere>, std::istream& file) {
+  return std::make_unique<NestedScene>(file);
+}
+std::unique_ptr<const GeometryD> load_triangles_d(std::span<const Sphere>, std::istream& file) {
+  return std::make_unique<const GeometryD>(std::make_shared<const BvhD>(BvhD::load(file)));
+}
+std::unique_ptr<const GeometryD> load_nested_d(std::span<const Sphere>, std::istream& file) {
+  return std::make_unique<const GeometryD>(NestedInstances<InstanceD>(file));
+}
 
+// In what files of scenes differ by their numbers. Kinds are indexed by GeometryRecord::kind; null: there are none.
+template <class Parts>
+struct Format;
+template <>
+struct Format<SceneParts> {
+  static constexpr FileKind kind = FileKind::scene;
+  static constexpr KindOfGeometry<Geometry> kinds[] = {
+      {load_triangles, false}, {load_spheres, true}, {load_nested, false}};
+};
+template <>
+struct Format<SceneDParts> {
+  static constexpr FileKind kind = FileKind::scene_of_doubles;
+  static constexpr KindOfGeometry<const GeometryD> kinds[] = {
+      {load_triangles_d, false}, {nullptr, true}, {load_nested_d, false}};
+};
+
+template <class Parts>
+using RecordOf = InstanceRecord<typename Parts::AnyTransform>;
+template <class Parts>
 struct Tables {
   std::vector<GeometryRecord> geometries;
-  std::vector<InstanceRecord> instances;
+  std::vector<RecordOf<Parts>> instances;
   std::vector<Sphere> spheres;  // of one geometry after the other
 };
 
-InstanceRecord record_of(const Instance& instance) {
-  return {instance.geometry, instance.mask, instance.transform};
+template <class AnyInstance>
+auto record_of(const AnyInstance& instance) {
+  using AnyTransform = decltype(instance.transform);
+  return InstanceRecord<AnyTransform>{instance.geometry, instance.mask,
+                                      std::bit_cast<TransformWords<AnyTransform>>(instance.transform)};
 }
 
-Tables tables_of(const SceneParts& scene) {
-  Tables tables;
+template <class Parts>
+Tables<Parts> tables_of(const Parts& scene) {
+  Tables<Parts> tables;
   for (std::uint32_t i = 0; i < scene.geometries.size(); ++i)
     if (scene.words_of(i) != nullptr)
       throw std::invalid_argument("scene: geometry " + std::to_string(i) +
                                   " has masks of triangles, which no file holds");
   for (const auto& geometry : scene.geometries)
     tables.geometries.push_back(geometry->record(tables.geometries.size(), tables.spheres));
-  for (const Instance& instance : scene.instances) tables.instances.push_back(record_of(instance));
+  for (const auto& instance : scene.instances) tables.instances.push_back(record_of(instance));
   return tables;
 }
 
-void require_possible(const Tables& tables) {
+template <class Parts>
+void require_possible(const Tables<Parts>& tables) {
+  const auto& kinds = Format<Parts>::kinds;
   std::uint64_t spheres = 0;
   for (const GeometryRecord& geometry : tables.geometries) {
-    if (geometry.kind >= std::size(kinds))
+    if (geometry.kind >= std::size(kinds) || kinds[geometry.kind].load == nullptr)
       refuse_file("there is no geometry of kind " + std::to_string(geometry.kind));
     if (!kinds[geometry.kind].has_spheres && geometry.spheres != 0)
       refuse_file("it has spheres in a geometry of another kind");
@@ -66,30 +103,31 @@ void require_possible(const Tables& tables) {
     spheres += geometry.spheres;
   }
   if (spheres != tables.spheres.size()) refuse_file("its geometries have other spheres than it has");
-  for (const InstanceRecord& instance : tables.instances)
+  for (const RecordOf<Parts>& instance : tables.instances)
     if (instance.geometry >= tables.geometries.size())
       refuse_file("an instance is of geometry " + std::to_string(instance.geometry) +
                   ", which does not exist");
 }
 
-void require_geometries(const SceneParts& scene) {
+template <class Parts>
+void require_geometries(const Parts& scene) {
   for (std::size_t i = 0; i < scene.geometries.size(); ++i)
-    if (const NestedScene* const nested = scene.geometries[i]->nested())
+    if (const auto* const nested = scene.geometries[i]->nested())
       if (nested->geometries() >= scene.geometries.size() - i)
         refuse_file("scene " + std::to_string(i) + " within it has more geometries than there are");
 }
 
 // Places the next of these instances. If it is one of a scene, its parts must be where that puts them.
-void place_next(Scene& scene, std::span<const InstanceRecord> records) {
-  const std::size_t at = scene.instance_count();
-  const SceneParts& parts = TreeAccess::parts(scene);
+template <class Parts>
+void place_next(Parts& scene, std::span<const RecordOf<Parts>> records) {
+  const std::size_t at = scene.instances.size();
   const auto& [geometry, mask, transform] = records[at];
-  const NestedScene* const nested = parts.geometries[geometry]->nested();
+  const auto* const nested = scene.geometries[geometry]->nested();
   if (nested != nullptr && nested->size() >= records.size() - at)
     refuse_file("a scene within it has more instances than there are");
-  scene.place(geometry, transform, mask);
-  for (std::size_t i = at + 1; i < parts.instances.size(); ++i) {
-    const InstanceRecord record = record_of(parts.instances[i]);
+  scene.place(geometry, std::bit_cast<typename Parts::AnyTransform>(transform), mask);
+  for (std::size_t i = at + 1; i < scene.instances.size(); ++i) {
+    const RecordOf<Parts> record = record_of(scene.instances[i]);
     if (std::memcmp(&record, &records[i], sizeof record) != 0)
       refuse_file("instance " + std::to_string(i) + " is not where its scene is placed");
   }
@@ -100,14 +138,15 @@ FilePart part_of(const std::vector<T>& list) {
   return {list.data(), list.size() * sizeof(T)};
 }
 
-Tables read_tables(std::istream& file) {
-  TreeReader reader(file, FileKind::scene, format_version);
+template <class Parts>
+Tables<Parts> read_tables(std::istream& file) {
+  TreeReader reader(file, Format<Parts>::kind, format_version);
   Header header;
   reader.read(&header, sizeof header);
   if (header.geometries > max_mesh_triangles || header.instances > max_mesh_triangles ||
       header.spheres > no_primitive)
     refuse_file("its counts are impossible");
-  Tables tables;
+  Tables<Parts> tables;
   reader.read_array(header.geometries, tables.geometries);
   reader.read_array(header.instances, tables.instances);
   reader.read_array(header.spheres, tables.spheres);
@@ -116,30 +155,51 @@ Tables read_tables(std::istream& file) {
   return tables;
 }
 
-}  // namespace
-
-void Scene::save(std::ostream& file) const {
-  const Tables tables = tables_of(parts());
+template <class Parts>
+void save_parts(const Parts& scene, std::ostream& file) {
+  const Tables<Parts> tables = tables_of(scene);
   const Header header{tables.geometries.size(), tables.instances.size(), tables.spheres.size()};
   const FilePart written[] = {{&header, sizeof header},
                               part_of(tables.geometries),
                               part_of(tables.instances),
                               part_of(tables.spheres)};
-  write_tree(file, FileKind::scene, format_version, written);
-  for (const auto& geometry : parts().geometries) geometry->save(file);
+  write_tree(file, Format<Parts>::kind, format_version, written);
+  for (const auto& geometry : scene.geometries) geometry->save(file);
 }
-
-Scene Scene::load(std::istream& file) {
-  const QuietFloats quiet;
-  const Tables tables = read_tables(file);
-  Scene scene;
+template <class Parts>
+Parts load_parts(std::istream& file) {
+  const Tables<Parts> tables = read_tables<Parts>(file);
+  Parts scene;
   std::span<const Sphere> spheres = tables.spheres;
   for (const GeometryRecord& geometry : tables.geometries) {
-    scene.changed().add(kinds[geometry.kind].load(spheres.first(geometry.spheres), file));
+    scene.add(Format<Parts>::kinds[geometry.kind].load(spheres.first(geometry.spheres), file));
     spheres = spheres.subspan(geometry.spheres);
   }
-  require_geometries(scene.parts());
-  while (scene.instance_count() < tables.instances.size()) place_next(scene, tables.instances);
+  require_geometries(scene);
+  while (scene.instances.size() < tables.instances.size()) place_next<Parts>(scene, tables.instances);
+  return scene;
+}
+
+}  // namespace
+
+void Scene::save(std::ostream& file) const {
+  save_parts(parts(), file);
+}
+Scene Scene::load(std::istream& file) {
+  const QuietFloats quiet;
+  Scene scene;
+  scene.changed() = load_parts<SceneParts>(file);
+  scene.update();
+  return scene;
+}
+
+void SceneD::save(std::ostream& file) const {
+  save_parts(parts(), file);
+}
+SceneD SceneD::load(std::istream& file) {
+  const QuietFloats quiet;
+  SceneD scene;
+  scene.changed() = load_parts<SceneDParts>(file);
   scene.update();
   return scene;
 }

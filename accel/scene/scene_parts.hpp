@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/common_tree.hpp"
+#include "nested/placed_parts.hpp"
 
 namespace raylanes {
 
@@ -26,26 +27,6 @@ struct TopLevel {
 // Top levels of triangles come first.
 std::vector<TopLevel> tops_over(std::span<const Instance> instances, std::span<const InstanceBounds> bounds);
 
-// An element of a list by its number.
-template <class List>
-auto& at(const char* what, List& list, std::uint32_t number) {
-  if (number >= list.size())
-    throw std::out_of_range("scene: there is no " + std::string(what) + ' ' + std::to_string(number) +
-                            ", it has " + std::to_string(list.size()));
-  return list[number];
-}
-// Throws std::logic_error if a scene was changed and not updated.
-inline void require_current(bool is_current) {
-  if (!is_current) throw std::logic_error("scene: it was changed; update() comes before the next query");
-}
-// The number of the first element of so many that are added.
-template <class List>
-std::uint32_t next_number(const char* what, const List& list, std::size_t count = 1) {
-  if (count > max_mesh_triangles - list.size())
-    throw std::length_error("scene: more than 2^28 " + std::string(what));
-  return static_cast<std::uint32_t>(list.size());
-}
-
 // Whether a hit comes before another one of another instance. A miss comes before nothing.
 template <class AnyHit>
 bool is_before(const AnyHit& hit, const AnyHit& other) {
@@ -59,24 +40,16 @@ std::shared_ptr<const Tree> not_null(std::shared_ptr<const Tree> tree) {
   return tree;
 }
 
-// The masks of a geometry's triangles.
-using Words = std::vector<std::uint32_t>;
-
-struct SceneParts {
+struct SceneParts : PlacedParts<Geometry, Instance> {
   using Number = float;
-  std::vector<std::shared_ptr<Geometry>> geometries;
-  std::vector<std::shared_ptr<const Words>>
-      words;  // of the first geometries; null: all their triangles are there
-  std::vector<Instance> instances;
-  std::vector<bool> is_changed;  // of geometries: replaced or refitted since the last update
-  std::vector<std::shared_ptr<CommonTree>> commons;  // of the last update
-  bool traces_common = false;                        // whether they are in use, and there are any
-  std::uint32_t let_out = 0;                         // how many members have left them since
-  const CommonTree* only = nullptr;                  // the common tree if nothing else is traced
+  // As the last update made them:
+  std::vector<std::shared_ptr<CommonTree>> commons;
+  bool traces_common = false;        // whether they are in use, and there are any
+  std::uint32_t let_out = 0;         // how many members have left them since
+  const CommonTree* only = nullptr;  // the common tree if nothing else is traced
   // Triangles come first, then small shares. Each instance that can be hit, and is not in a common tree in use, is
   // in one of them.
   std::vector<TopLevel> tops;
-  bool is_current = true;  // whether all that is up to date
 
   // Whether rays with this mask are to be traced through a common tree.
   bool sees(const CommonTree& tree, std::uint32_t of_mask) const {
@@ -87,20 +60,6 @@ struct SceneParts {
   bool has_others() const { return !tops.empty() && tops.back().walked.entries == nullptr; }
   bool has_only_others() const { return !traces_common && has_others() && tops[0].walked.entries == nullptr; }
 
-  // The masks of the triangles of a geometry; null if it has none.
-  const Words* words_of(std::uint32_t geometry) const {
-    return geometry < words.size() ? words[geometry].get() : nullptr;
-  }
-  bool has_words() const {
-    return std::ranges::any_of(words, [](const auto& of_geometry) { return of_geometry != nullptr; });
-  }
-  // The same for a call with this mask.
-  TriangleMasks masks_of(std::uint32_t geometry, std::uint32_t of_mask) const {
-    const Words* const of_geometry = words_of(geometry);
-    return of_geometry != nullptr ? TriangleMasks{of_geometry->data(), of_geometry->size(), of_mask}
-                                  : TriangleMasks{};
-  }
-
   // Sets `only`, after changes of the rest.
   void set_only() noexcept {
     only = traces_common && commons.size() == 1 && tops.empty() ? commons[0].get() : nullptr;
@@ -109,22 +68,6 @@ struct SceneParts {
   void set_trees() noexcept;
   // Sets tops and their views of this scene.
   void set_tops(std::vector<TopLevel> made) noexcept;
-  std::uint32_t add(std::span<const std::shared_ptr<Geometry>> added) {
-    const std::uint32_t number = next_number("geometries", geometries, added.size());
-    is_changed.reserve(number + added.size());
-    geometries.insert(geometries.end(), added.begin(), added.end());
-    is_changed.resize(geometries.size());
-    return number;
-  }
-  std::uint32_t add(const std::shared_ptr<Geometry>& geometry) { return add(std::span(&geometry, 1)); }
-  void replace(std::uint32_t number, std::shared_ptr<Geometry> geometry);
-  // The instance and the parts of the scene that it places, which follow it. Throws std::out_of_range if there is no
-  // such instance, and std::invalid_argument if another one places its scene.
-  std::span<Instance> placed(std::uint32_t instance);
-  void has_changed(std::uint32_t geometry) {
-    is_changed[geometry] = true;
-    is_current = false;
-  }
 };
 
 // The common tree if a call with one ray may go straight to it: it has all that the mask sees, and nothing traps.

@@ -177,11 +177,7 @@ void Scene::replace(std::uint32_t geometry, std::shared_ptr<const Bvh> tree) {
 void Scene::set_triangle_masks(std::uint32_t geometry, std::span<const std::uint32_t> masks) {
   SceneParts& parts = changed();
   triangles_at(parts, geometry);
-  parts.words.resize(std::max(parts.words.size(), std::size_t{geometry} + 1));
-  std::shared_ptr<const Words> words;
-  if (!masks.empty()) words = std::make_shared<const Words>(masks.begin(), masks.end());
-  parts.words[geometry] = std::move(words);
-  parts.has_changed(geometry);
+  parts.set_triangle_masks(geometry, masks);
 }
 void Scene::refit(std::uint32_t geometry, VertexView vertices, IndexView triangles, int threads) {
   SceneParts& parts = changed();

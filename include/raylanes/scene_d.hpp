@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iosfwd>
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <raylanes/doubles.hpp>
 #include <raylanes/scene.hpp>
@@ -109,7 +111,8 @@ concept TreeOfFloats = std::derived_from<Tree, TriangleTree> || std::same_as<Tre
 /// - instances whose transform has a number that is not finite;
 /// - instances whose transform is singular to doubles: |determinant| <= 2^-48 times the sum of its six terms' sizes, or
 ///   less than 2^-900 times the cube of the largest entry;
-/// - instances whose inverse, or whose corners in the scene, reach beyond the largest double.
+/// - instances whose inverse, or whose corners in the scene, reach beyond the largest double;
+/// - instances of scenes: those that belong to them are hit.
 ///
 /// A ray misses an instance if its origin or direction is not finite there. It also misses an instance if its direction
 /// is below 2^-900 there, unless the instance's transform is the identity.
@@ -117,9 +120,9 @@ concept TreeOfFloats = std::derived_from<Tree, TriangleTree> || std::same_as<Tre
 /// Meshes that stand where they were made are traced as one tree, as fast as one BvhD of them. The call update() builds
 /// this common tree over the triangles of the instances whose transform is the identity. If their masks differ, each
 /// mask has a tree, up to four trees, for the masks of most triangles. A tree is built again if its instances, or their
-/// geometries, have changed since the last update(). A tree of one instance is that of its geometry, and costs nothing.
-/// Common trees take the time and the memory of a BvhD of their triangles, besides geometries. Results do not depend on
-/// them. Rays go through other instances individually, nearest first.
+/// geometries, have changed since the last update(); set_moving() keeps an instance out. A tree of one instance is that
+/// of its geometry, and costs nothing. Common trees take the time and the memory of a BvhD of their triangles, besides
+/// geometries. Results do not depend on them. Rays go through other instances individually, nearest first.
 class SceneD : public SurfaceQueries<SceneD>, public PointQueries<SceneD> {
  public:
   /// Makes an empty scene.
@@ -145,31 +148,64 @@ class SceneD : public SurfaceQueries<SceneD>, public PointQueries<SceneD> {
   /// Does not compile: Scene is for trees of floats.
   template <detail::TreeOfFloats Tree>
   std::uint32_t add(const Tree&) = delete;  // of floats; a SceneD has doubles: add a BvhD, or take a Scene
-  /// Replaces a geometry; its instances stay where they are. Throws std::out_of_range if there is no such geometry.
+  /// Adds a scene, to be placed as a whole; returns the index of the geometry. The scene is added as it is: later
+  /// changes of it do not change this scene, and it needs no update(). It may place scenes itself, to any depth. It may
+  /// be this scene, as it was before the call.
+  /// Its geometries are shared, and follow in their order: its geometry i is geometry `returned + 1 + i` of this scene,
+  /// which may be replaced, refitted, and placed by itself. Takes 108 bytes for each instance of the added scene.
+  /// Throws std::length_error for more than 2^28 geometries.
+  std::uint32_t add(const SceneD& scene);
+  /// Replaces a geometry; its instances stay where they are. Throws std::out_of_range if there is no such geometry, and
+  /// std::invalid_argument if it is a scene.
   void replace(std::uint32_t geometry, BvhD tree);
   /// Replaces a geometry by a tree that the scene shares with its other owners. Throws as add() and replace() do.
   void replace(std::uint32_t geometry, std::shared_ptr<const BvhD> tree);
-  /// Returns the tree of a geometry. Throws as replace() does. The reference is valid until the geometry is replaced or
-  /// the scene is destroyed or assigned to.
+  /// Refits a geometry to a moved mesh: replaces its tree by BvhD::refitted() of it. Copies of the scene, and other
+  /// owners of the tree, keep it as it was. Throws as BvhD::refitted() and replace() do. Strong exception guarantee.
+  void refit(std::uint32_t geometry, VertexViewD vertices, IndexView triangles, int threads = 1);
+  /// Gives the triangles of a geometry masks: a call sees triangle i if masks[i] and the mask of the call have a bit in
+  /// common, besides the instance's mask. Triangles from masks.size() on are always there, and an empty span takes all
+  /// masks away. The scene copies them. They hold for all calls with rays, and for no calls with points. update() must
+  /// follow.
+  /// Instances of the geometry are in no common tree. A refit keeps the masks, replace() takes them away, and no file
+  /// holds them. Throws as replace() does.
+  void set_triangle_masks(std::uint32_t geometry, std::span<const std::uint32_t> masks);
+  /// Returns the tree of a geometry; the empty tree if the geometry is a scene. Throws std::out_of_range if there is no
+  /// such geometry. The reference is valid until the geometry is replaced or refitted or the scene is destroyed or
+  /// assigned to.
   const BvhD& tree(std::uint32_t geometry) const&;
   /// Does not compile: the reference would outlive a temporary scene.
   const BvhD& tree(std::uint32_t geometry) const&& = delete;
   std::size_t geometry_count() const noexcept;  ///< the number of geometries
 
   /// Places a geometry; returns the index of the instance. An instance with mask 0 is never hit.
+  /// If the geometry is a scene, each of its instances becomes one of this scene: instance j of the added scene is
+  /// instance `returned + 1 + j`. Hits name these instances, and levels_of() their way, as in a Scene.
+  /// - Its transform is the product of both levels' transforms. Pairs of doubles compute each number as
+  ///   (a·x + b·y) + c·z, and add d in the translation; the result is rounded once to double. It differs from the exact
+  ///   number by at most 2^-53 of its size, 2^-100 of the sizes of what it is summed from, and 2^-1000. If these sizes
+  ///   add up to 2^1022 or more, it may be not finite; such an instance is never hit.
+  /// - Its mask has the bits that are in the masks of both levels.
   /// Throws std::out_of_range if there is no such geometry, and std::length_error for more than 2^28 instances.
   std::uint32_t place(std::uint32_t geometry, const TransformD& transform = {}, std::uint32_t mask = ~0u);
-  /// Gives an instance another transform. Throws std::out_of_range if there is no such instance.
+  /// Gives an instance another transform. If it places a scene, all instances of that move. Throws std::out_of_range if
+  /// there is no such instance, and std::invalid_argument if it belongs to a scene that another instance places.
   void move(std::uint32_t instance, const TransformD& transform);
   /// Gives an instance another mask, from the next update() on. Throws as move() does.
   void set_mask(std::uint32_t instance, std::uint32_t mask);
-  /// Returns the geometry of an instance. Throws as move() does.
+  /// Says that an instance will move, or change otherwise, so that it is in no common tree from the next update() on;
+  /// or, with false, that it will no longer. Throws as move() does.
+  void set_moving(std::uint32_t instance, bool moving = true);
+  /// Returns the geometry of an instance. Throws std::out_of_range if there is no such instance.
   std::uint32_t geometry_of(std::uint32_t instance) const;
-  /// Returns the transform of an instance. Throws as move() does.
+  /// Returns the transform of an instance. Throws as geometry_of() does.
   TransformD transform_of(std::uint32_t instance) const;
-  /// Returns the mask of an instance. Throws as move() does.
+  /// Returns the mask of an instance. Throws as geometry_of() does.
   std::uint32_t mask_of(std::uint32_t instance) const;
-  std::size_t instance_count() const noexcept;  ///< the number of instances
+  /// Returns the way to an instance from the outermost level in, as Scene::levels_of() does. Throws as geometry_of()
+  /// does.
+  std::vector<InstanceLevel> levels_of(std::uint32_t instance) const;
+  std::size_t instance_count() const noexcept;  ///< the number of instances, parts of scenes among them
 
   /// Makes the scene ready for queries: builds the tree over the instances, and common trees where the rules of the
   /// class say so. `threads` is as in TraceOptionsD, for common trees.
@@ -199,12 +235,22 @@ class SceneD : public SurfaceQueries<SceneD>, public PointQueries<SceneD> {
   /// does.
   RayLists<ContainingPart> containing_parts(Points points, const LocateOptions& options = {}) const;
 
+  /// Writes the scene as bytes, from which load() makes a scene with the same hits on any machine. docs/tree_file.md
+  /// has the format. Throws std::invalid_argument if triangles have masks, which no file holds, and std::runtime_error
+  /// if the stream does not take it.
+  void save(std::ostream& file) const;
+  /// Returns the scene that save() wrote, as after update(), which builds the common trees. The file does not say what
+  /// set_moving() said. Throws as BvhD::load() does, also for the file of a Scene.
+  static SceneD load(std::istream& file);
+
   /// Returns a box around all that can be hit, slightly enlarged, at the last update(); lo = +infinity and
   /// hi = −infinity for an empty scene. All of space, if an instance has entries so different that nothing bounds what
   /// roundings move.
   BoxD bounds() const noexcept;
   /// Returns the bytes of the instances, the tree over them and the common trees, without geometries.
   std::size_t bytes() const noexcept;
+  /// Returns what the common trees hold, as Scene::report() does.
+  SceneReport report() const noexcept;
 
  private:
   friend struct TreeAccess;

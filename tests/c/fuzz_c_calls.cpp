@@ -96,7 +96,7 @@ class Caller {
     if (status == RAYLANES_OK && std::memcmp(buffer, file.data(), size) != 0)
       fail("the bytes of a saved tree");
     for (std::size_t left = bytes_.below(4); left > 0; --left) damage(bytes_, file);
-    if (bytes_.chance(200)) put_right_checksum(file);
+    if (bytes_.chance(200)) put_right_checksums(file);
     load(file);
   }
 

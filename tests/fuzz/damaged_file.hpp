@@ -10,10 +10,14 @@ namespace raylanes::testing {
 
 inline constexpr std::size_t checksum_at = 24, checked_from = 32;
 
-inline void put_right_checksum(std::string& file) {
-  if (file.size() < checked_from) return;
-  const std::uint64_t sum = XXH3_64bits(file.data() + checked_from, file.size() - checked_from);
-  std::memcpy(file.data() + checksum_at, &sum, sizeof sum);
+// A file has one for each of its parts, which begin with their names.
+inline void put_right_checksums(std::string& file) {
+  for (std::size_t at = 0, end; at < file.size(); at = end) {
+    end = std::min(file.find("raylanes ", at + 1), file.size());
+    if (end - at < checked_from) continue;
+    const std::uint64_t sum = XXH3_64bits(file.data() + at + checked_from, end - at - checked_from);
+    std::memcpy(file.data() + at + checksum_at, &sum, sizeof sum);
+  }
 }
 
 // Words of a file are counts, references, names, floats, halves of doubles.

@@ -6,6 +6,7 @@
 #include "../fuzz/any_mesh.hpp"
 #include "../fuzz/fence.hpp"
 #include "../support/same_bytes.hpp"
+#include "any_nesting.hpp"
 #include "fuzz_primitives.hpp"
 #include "points/placed_triangles.hpp"
 #include "scene_oracle.hpp"
@@ -24,13 +25,6 @@ Transform any_transform(Bytes& bytes, Coordinates& coordinates) {
     for (std::size_t j = 0; j < 3 && kind > 1; ++j) transform.row[i][j] = coordinates();
   }
   return transform;
-}
-
-// Often one that others have.
-std::uint32_t any_mask(Bytes& bytes) {
-  return bytes.chance(100)   ? ~0u
-         : bytes.chance(200) ? static_cast<std::uint32_t>(bytes.below(5))
-                             : bytes.byte();
 }
 
 void expect_same(const Scene& scene, std::span<const Ray> rays, const std::vector<SceneHit>& expected,
@@ -295,30 +289,6 @@ void expect_triangle_masks(Bytes& bytes, Scene scene, const std::vector<Ray>& ra
       fail("all hits of masked triangles: ray " + std::to_string(i) + " on " + options.path->name);
 }
 
-// As a scene within another one, some times, beside its own parts alone. Then that changes as it may.
-Scene within_another(Bytes& bytes, Coordinates& coordinates, const Scene& scene) {
-  Scene outer;
-  outer.add(scene);
-  for (std::size_t places = 1 + bytes.below(3); places > 0; --places)
-    outer.place(bytes.chance(200) ? 0 : static_cast<std::uint32_t>(bytes.below(outer.geometry_count())),
-                any_transform(bytes, coordinates), any_mask(bytes));
-  outer.update();
-  for (std::size_t steps = bytes.below(4); steps > 0; --steps) {
-    const auto instance = static_cast<std::uint32_t>(bytes.below(outer.instance_count()));
-    const std::size_t kind = bytes.below(3), levels = outer.levels_of(instance).size();
-    try {
-      if (kind == 0) outer.set_mask(instance, any_mask(bytes));
-      if (kind == 1) outer.set_moving(instance, bytes.chance(128));
-      if (kind == 2) outer.move(instance, any_transform(bytes, coordinates));
-      if (levels > 1) fail("a part of a scene was changed by itself");
-    } catch (const std::invalid_argument&) {
-      if (levels == 1) fail("an instance could not be changed");
-    }
-    if (kind == 2 || bytes.chance(64)) outer.update();
-  }
-  return outer;
-}
-
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -341,7 +311,7 @@ int fuzz_scenes(const std::uint8_t* data, std::size_t size) {
   if (instances > 0 && bytes.chance(128)) change_some(bytes, coordinates, scene, meshes);
   if (bytes.chance(64)) scene = copied(scene, meshes[0]);
   for (std::size_t levels = bytes.below(8); levels > 5; --levels)
-    scene = within_another(bytes, coordinates, scene);
+    scene = within_another(bytes, scene, [&] { return any_transform(bytes, coordinates); });
   if (bytes.chance(64)) scene = loaded_again(bytes, std::move(scene));
   const TraceOptions options{.mode = static_cast<TraversalMode>(bytes.below(traversal_mode_names.size())),
                              .path = bytes.pick(fuzzed_paths()),

@@ -139,7 +139,7 @@ TYPED_TEST(SavedTrees, of_earlier_versions_load) {
   for (const char test : {char{0}, char{1}, char{7}, char{8}, char{99}}) {
     std::string older = bytes;
     older[at] = test;
-    put_right_checksum(older);
+    put_right_checksums(older);
     if (test <= max_test)
       EXPECT_EQ(saved(loaded<TypeParam>(older)), bytes);
     else

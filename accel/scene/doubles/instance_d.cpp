@@ -120,6 +120,10 @@ InstanceD::InstanceD(std::uint32_t geometry_, const TransformD& transform_, std:
   is_identity = std::memcmp(&transform, &identity, sizeof identity) == 0;
 }
 
+TransformD composed(const TransformD& outer, const TransformD& inner) {
+  return product_of<Pair>(outer, inner, [](const Pair& x) { return x.rounded(); });
+}
+
 Double3 in_part(const InstanceD& instance, const Double3& point) {
   if (instance.is_identity) return point;
   Pair moved[3];

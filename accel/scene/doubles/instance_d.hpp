@@ -3,7 +3,7 @@
 
 #include <raylanes/scene_d.hpp>
 
-#include "../../standard.hpp"
+#include "../instance.hpp"
 
 namespace raylanes {
 
@@ -21,7 +21,9 @@ struct InstanceD {
   TransformD transform;
   InverseD inverse;
   std::uint32_t geometry, mask;
+  std::uint32_t placer = no_part;  // as in Instance
   bool is_identity;
+  Standing standing = Standing::added;  // or apart: it is in no common tree
 
   InstanceD(std::uint32_t geometry_, const TransformD& transform_, std::uint32_t mask_);
 };
@@ -39,5 +41,8 @@ struct InstanceBoundsD {
   double share = 0;
 };
 InstanceBoundsD bounds_of(const InstanceD& instance, const BoxD& part);
+
+// As SceneD::place() says.
+TransformD composed(const TransformD& outer, const TransformD& inner);
 
 }  // namespace raylanes

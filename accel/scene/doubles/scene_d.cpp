@@ -8,6 +8,8 @@
 namespace raylanes {
 
 GeometryD::GeometryD(std::shared_ptr<const BvhD> of) : tree(not_null(std::move(of))) {}
+GeometryD::GeometryD(NestedInstances<InstanceD> scene)
+    : tree(std::make_shared<const BvhD>()), scene_(std::move(scene)) {}
 double GeometryD::volume() const {
   const double known = volume_;
   if (known >= 0.0) return known;
@@ -48,9 +50,7 @@ std::uint32_t SceneD::add(BvhD tree) {
   return add(std::make_shared<const BvhD>(std::move(tree)));
 }
 std::uint32_t SceneD::add(std::shared_ptr<const BvhD> tree) {
-  const std::uint32_t number = next_number("geometries", changed().geometries);
-  changed().geometries.push_back(std::make_shared<const GeometryD>(std::move(tree)));
-  return number;
+  return changed().add(std::make_shared<const GeometryD>(std::move(tree)));
 }
 std::uint32_t SceneD::add(VertexViewD vertices, IndexView triangles, const BuildOptions& options) {
   return add(BvhD(vertices, triangles, options));
@@ -59,8 +59,17 @@ void SceneD::replace(std::uint32_t geometry, BvhD tree) {
   replace(geometry, std::make_shared<const BvhD>(std::move(tree)));
 }
 void SceneD::replace(std::uint32_t geometry, std::shared_ptr<const BvhD> tree) {
-  at("geometry", changed().geometries, geometry) = std::make_shared<const GeometryD>(std::move(tree));
-  changed().is_current = false;
+  changed().replace(geometry, std::make_shared<const GeometryD>(std::move(tree)));
+}
+void SceneD::refit(std::uint32_t geometry, VertexViewD vertices, IndexView triangles, int threads) {
+  std::shared_ptr<const GeometryD>& refitted = changed().own(geometry);
+  refitted = std::make_shared<const GeometryD>(
+      std::make_shared<const BvhD>(refitted->tree->refitted(vertices, triangles, threads)));
+  changed().has_changed(geometry);
+}
+void SceneD::set_triangle_masks(std::uint32_t geometry, std::span<const std::uint32_t> masks) {
+  changed().own(geometry);
+  changed().set_triangle_masks(geometry, masks);
 }
 const BvhD& SceneD::tree(std::uint32_t geometry) const& {
   return *at("geometry", parts().geometries, geometry)->tree;
@@ -71,21 +80,20 @@ std::size_t SceneD::geometry_count() const noexcept {
 
 std::uint32_t SceneD::place(std::uint32_t geometry, const TransformD& transform, std::uint32_t mask) {
   const QuietFloats quiet;
-  at("geometry", changed().geometries, geometry);
-  const std::uint32_t number = next_number("instances", changed().instances);
-  changed().instances.emplace_back(geometry, transform, mask);
-  changed().is_current = false;
-  return number;
+  return changed().place(geometry, transform, mask);
 }
 void SceneD::move(std::uint32_t instance, const TransformD& transform) {
   const QuietFloats quiet;
-  InstanceD& moved = at("instance", changed().instances, instance);
-  moved = InstanceD(moved.geometry, transform, moved.mask);
-  changed().is_current = false;
+  changed().move(instance, transform);
 }
 void SceneD::set_mask(std::uint32_t instance, std::uint32_t mask) {
-  at("instance", changed().instances, instance).mask = mask;
+  const std::span<InstanceD> all = changed().placed(instance);
+  const NestedInstances<InstanceD>* const scene = changed().geometries[all[0].geometry]->nested();
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].mask = i == 0 ? mask : scene->mask(i - 1, mask);
   changed().is_current = false;
+}
+void SceneD::set_moving(std::uint32_t instance, bool moving) {
+  changed().set_moving(instance, moving);
 }
 std::uint32_t SceneD::geometry_of(std::uint32_t instance) const {
   return at("instance", parts().instances, instance).geometry;
@@ -116,10 +124,19 @@ std::size_t SceneD::bytes() const noexcept {
   const SceneDParts& scene = parts();
   std::size_t bytes = scene.instances.size() * (sizeof(InstanceD) + sizeof(BoxD)) + scene.apart.bytes() +
                       scene.together.bytes();
-  for (const auto& tree : scene.commons)
-    bytes +=
-        tree->members.size() * sizeof(Member) + tree->slots.size() * sizeof(TriangleOwner) + tree->own_bytes;
+  for (const auto& tree : scene.commons) bytes += tree->bytes();
   return bytes;
+}
+SceneReport SceneD::report() const noexcept {
+  SceneReport report;
+  for (const auto& geometry : parts().geometries)
+    if (const BvhDArrays* const tree = TreeAccess::arrays(*geometry->tree))
+      report.mesh_triangles += tree->mesh_triangles;
+  for (const auto& tree : parts().commons) {
+    ++report.common_trees, report.common_instances += tree->members.size() - 1;
+    report.common_triangles += tree->triangles, report.common_bytes += tree->bytes();
+  }
+  return report;
 }
 
 }  // namespace raylanes

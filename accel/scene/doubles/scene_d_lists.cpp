@@ -7,23 +7,7 @@
 namespace raylanes {
 namespace {
 
-// A call for lists, whose options are found good.
-struct ListCallD {
-  CheckedCall<double, ListOptions> checked;
-  SceneDQuery query;
-
-  ListCallD(const char* call, const SceneDParts& scene, const RaySourceOf<double>& rays,
-            const ListOptions& options)
-      : checked(call, rays, options),
-        query(checked_query(scene, {.path = options.path,
-                                    .threads = options.threads,
-                                    .facing = options.facing,
-                                    .skip = options.skip,
-                                    .mask = options.mask,
-                                    .masks = options.masks})) {
-    checked_queries<double>(call, options);
-  }
-};
+using ListCall = SceneListCall<double, SceneDQuery>;
 
 // The items of all rays; rays of no direction hit nothing. A ray's items of one instance are in order.
 template <class Item>
@@ -47,6 +31,7 @@ std::vector<FoundItem<Item>> items_of(const SceneDQuery& query, const std::vecto
   for (std::uint32_t number = 0; number < of_instance.size(); ++number) {
     if (of_instance[number].empty()) continue;
     const InstanceD& instance = scene.instances[number];
+    options.masks = scene.masks_in(instance.geometry);
     mapped.clear();
     for (const std::uint32_t i : of_instance[number]) mapped.push_back(in_part(instance, rays[i]));
     append_lists<Item>(found, scene.tree_of(instance)->view(), OneMember(number, instance.geometry).numbers(),
@@ -56,14 +41,11 @@ std::vector<FoundItem<Item>> items_of(const SceneDQuery& query, const std::vecto
 }
 
 template <class Item>
-RayLists<SceneItem<Item>> lists_in(const ListCallD& call) {
-  const RaySourceOf<double>& rays = call.checked.rays;
+RayLists<SceneItem<Item>> lists_in(const ListCall& call) {
   const ListOptions& options = call.checked.options;
   if (const CommonTreeD* const tree = call.query.scene.only(options.mask))
-    return lists_in_common<Item>(tree->arrays().view(), tree->numbers(), rays, options);
-  std::vector<RayD> active(rays.size());
-  for (std::size_t i = 0; i < active.size(); ++i)
-    if (rays.takes_part(i)) active[i] = rays[i];
+    return lists_in_common<Item>(tree->arrays().view(), tree->numbers(), call.checked.rays, options);
+  const std::vector<RayD> active = call.active();
   RayLists<SceneItem<Item>> lists;
   set_lists(items_of<Item>(call.query, active, options), active.size(), options.max_count, lists);
   return lists;
@@ -82,7 +64,11 @@ struct SurfaceDoor<SceneD> {
                                                         const SceneHitD& hit) mutable {
       const InstanceD& instance = parts.instances[hit.instance];
       auto& judge = judges[hit.geometry];
-      if (!judge) judge.emplace(parts.tree_of(instance)->view(), options);
+      if (!judge) {
+        TraceOptionsD of_geometry = options;
+        of_geometry.masks = parts.masks_in(hit.geometry);
+        judge.emplace(parts.tree_of(instance)->view(), of_geometry);
+      }
       return (*judge)(in_part(instance, ray),
                       skipped.instance == hit.instance ? skipped.primitive : no_primitive,
                       {hit.t, hit.u, hit.v, hit.primitive});

@@ -4,7 +4,7 @@
 #include "../../doubles/bvh_d_arrays.hpp"
 #include "../../queries/traced_tree.hpp"
 #include "../lists/lists_in_trees.hpp"
-#include "instance_d.hpp"
+#include "../nested/placed_parts.hpp"
 
 namespace raylanes {
 
@@ -12,23 +12,32 @@ namespace raylanes {
 class GeometryD {
  public:
   explicit GeometryD(std::shared_ptr<const BvhD> of);
-  // As Geometry::volume().
+  explicit GeometryD(NestedInstances<InstanceD> scene);  // with an empty tree
+  // As in Geometry.
   double volume() const;
+  const NestedInstances<InstanceD>* nested() const { return scene_ ? &*scene_ : nullptr; }
+  GeometryRecord record(std::size_t, std::vector<Sphere>&) const {
+    return {scene_ ? nested_scene : triangle_geometry, 0};
+  }
+  void save(std::ostream& file) const { scene_ ? scene_->save(file) : tree->save(file); }
 
   const std::shared_ptr<const BvhD> tree;  // not null
 
  private:
+  const std::optional<NestedInstances<InstanceD>> scene_;
   mutable std::atomic<double> volume_{-1.0};  // negative: not known yet
 };
 
 // A tree over the triangles of instances of one mask whose transform is the identity.
 struct CommonTreeD : MemberTable {
-  std::shared_ptr<const BvhD> tree;                          // that of the only member, or one of its own
-  std::vector<std::shared_ptr<const GeometryD>> geometries;  // of members
+  std::shared_ptr<const BvhD> tree;  // that of the only member, or one of its own
   std::uint32_t mask;
   std::size_t own_bytes = 0;  // of the tree
 
   const BvhDArrays& arrays() const { return *TreeAccess::arrays(*tree); }
+  std::size_t bytes() const {
+    return members.size() * sizeof(Member) + slots.size() * sizeof(TriangleOwner) + own_bytes;
+  }
 };
 
 // A tree over instances.
@@ -41,15 +50,12 @@ struct InstanceBoxes {
   std::size_t bytes() const { return tree.bytes() + others.size() * sizeof(std::uint32_t); }
 };
 
-struct SceneDParts {
+struct SceneDParts : PlacedParts<const GeometryD, InstanceD> {
   using Number = double;
-  std::vector<std::shared_ptr<const GeometryD>> geometries;
-  std::vector<InstanceD> instances;
   // As the last update made them:
   std::vector<std::shared_ptr<const CommonTreeD>> commons;
   std::vector<BoxD> boxes;        // of instances, padded; empty: nothing is hit
   InstanceBoxes apart, together;  // instances in no common tree, and those in one
-  bool is_current = true;         // whether all that is up to date
 
   // The tree of an instance; null: it is empty.
   const BvhDArrays* tree_of(const InstanceD& instance) const {

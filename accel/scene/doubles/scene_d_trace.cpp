@@ -99,16 +99,31 @@ std::uint32_t number_of(const SkippedPrimitive& skipped, const MemberNumbers& nu
   return skipped.primitive != no_primitive ? numbers.of(skipped.instance, skipped.primitive) : no_primitive;
 }
 
-HitD closest_in(const DoubleRayKernels& kernels, const BvhDArrays& tree, const RayD& ray, Facing facing,
+HitD closest_in(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const RayD& ray, Facing facing,
                 std::uint32_t skipped, const HitD* after) {
-  if (after == nullptr) return kernels.closest_of_ray(tree.ready, ray, facing, skipped);
+  if (after == nullptr) return kernels.closest_of_ray(tree, ray, facing, skipped);
   HitD hit;
   DoubleBatch batch;
   batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.facing = facing, batch.after = after;
   if (skipped != no_primitive) batch.skip = &skipped;
-  kernels.closest(tree.ready, batch);
+  kernels.closest(tree, batch);
   return hit;
 }
+
+// The tree of an instance, as a call with this mask sees its triangles.
+class SeenTree {
+ public:
+  SeenTree(const SceneDParts& scene, const InstanceD& instance, std::uint32_t mask)
+      : all_(scene.tree_of(instance)->ready) {
+    if (scene.words_of(instance.geometry) != nullptr)
+      some_.emplace(all_).tree.masks = scene.masks_of(instance.geometry, mask);
+  }
+  const DoubleTreeView& view() const { return some_ ? *some_ : all_; }
+
+ private:
+  const DoubleTreeView& all_;
+  std::optional<DoubleTreeView> some_;
+};
 
 }  // namespace
 
@@ -135,7 +150,7 @@ SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped,
         kernels.closest_of_ray(only->arrays().ready, ray, facing, number_of(skipped, only->numbers())),
         only->numbers().owners);
   SceneHitD best;
-  const auto look_in = [&](const BvhDArrays& tree, const MemberNumbers& numbers, const RayD& mapped) {
+  const auto look_in = [&](const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& mapped) {
     HitD last;
     if (after != nullptr) last = numbers.after(*after);
     const SceneHitD hit = in_scene(closest_in(kernels, tree, mapped, facing, number_of(skipped, numbers),
@@ -144,11 +159,11 @@ SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped,
     if (is_before(hit, best)) best = hit;
   };
   for (const auto& tree : scene.commons)
-    if ((tree->mask & mask) != 0) look_in(tree->arrays(), tree->numbers(), rest_of(ray, best));
+    if ((tree->mask & mask) != 0) look_in(tree->arrays().ready, tree->numbers(), rest_of(ray, best));
   each_along(scene, mask, ray, rest_of(ray, best).tmax, [&](std::uint32_t number) {
     const InstanceD& instance = scene.instances[number];
     const RayD rest = rest_of(ray, best);
-    look_in(*scene.tree_of(instance), OneMember(number, instance.geometry).numbers(),
+    look_in(SeenTree(scene, instance, mask).view(), OneMember(number, instance.geometry).numbers(),
             in_part(instance, rest));
     return rest_of(ray, best).tmax;
   });
@@ -156,16 +171,16 @@ SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped,
 }
 bool SceneDQuery::any(const RayD& ray, const SkippedPrimitive& skipped) const {
   bool is_hit = false;
-  const auto look_in = [&](const BvhDArrays& tree, const MemberNumbers& numbers, const RayD& mapped) {
-    is_hit = is_hit || kernels.any_of_ray(tree.ready, mapped, facing, number_of(skipped, numbers));
+  const auto look_in = [&](const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& mapped) {
+    is_hit = is_hit || kernels.any_of_ray(tree, mapped, facing, number_of(skipped, numbers));
     return is_hit ? -infinity : ray.tmax;
   };
   for (const auto& tree : scene.commons)
-    if (!is_hit && (tree->mask & mask) != 0) look_in(tree->arrays(), tree->numbers(), ray);
+    if (!is_hit && (tree->mask & mask) != 0) look_in(tree->arrays().ready, tree->numbers(), ray);
   if (is_hit) return true;
   each_along(scene, mask, ray, ray.tmax, [&](std::uint32_t number) {
     const InstanceD& instance = scene.instances[number];
-    return look_in(*scene.tree_of(instance), OneMember(number, instance.geometry).numbers(),
+    return look_in(SeenTree(scene, instance, mask).view(), OneMember(number, instance.geometry).numbers(),
                    in_part(instance, ray));
   });
   return is_hit;

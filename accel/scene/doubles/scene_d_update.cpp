@@ -30,7 +30,9 @@ std::vector<Group> groups_of(const SceneDParts& scene, std::span<const BoxD> box
   std::map<std::uint32_t, Group> of_mask;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceD& instance = scene.instances[i];
-    if (!instance.is_identity || instance.mask == 0 || !(boxes[i].lo[0] <= boxes[i].hi[0])) continue;
+    if (!instance.is_identity || instance.mask == 0 || !(boxes[i].lo[0] <= boxes[i].hi[0]) ||
+        instance.standing == Standing::apart || scene.words_of(instance.geometry) != nullptr)
+      continue;
     Group& group = of_mask[instance.mask];
     const std::size_t with_it = group.triangles + triangles_of(scene, i);
     if (with_it + with_it / 8 > max_mesh_triangles && !group.instances.empty()) continue;
@@ -44,16 +46,15 @@ std::vector<Group> groups_of(const SceneDParts& scene, std::span<const BoxD> box
 }
 
 // Builds as the largest of the meshes is built. Unused numbers are points, which trees leave out.
-BvhD united(const CommonTreeD& common, int threads) {
-  const std::span<const Member> members(common.members);
-  const std::size_t largest =
-      static_cast<std::size_t>(std::ranges::max_element(members, {}, &Member::triangles) - members.begin());
-  BuildOptions options = TreeAccess::arrays(*common.geometries[largest]->tree)->built_with;
+BvhD united(const SceneDParts& scene, std::span<const Member> members, int threads) {
+  const auto tree_of = [&](const Member& member) -> const BvhDArrays& {
+    return *TreeAccess::arrays(*scene.geometries[member.geometry]->tree);
+  };
+  BuildOptions options = tree_of(*std::ranges::max_element(members, {}, &Member::triangles)).built_with;
   options.threads = threads;
   std::vector<CornersOf<double>> corners(members.back().first);
-  for (std::size_t k = 0; k + 1 < members.size(); ++k)
-    std::ranges::copy(triangles_of(*TreeAccess::arrays(*common.geometries[k]->tree)),
-                      corners.begin() + members[k].first);
+  for (const Member& member : members.first(members.size() - 1))
+    std::ranges::copy(triangles_of(tree_of(member)), corners.begin() + member.first);
   std::vector<std::uint32_t> indices(3 * corners.size());
   std::iota(indices.begin(), indices.end(), 0u);
   return {VertexViewD(corners.data(), indices.size()), indices, options};
@@ -62,20 +63,21 @@ BvhD united(const CommonTreeD& common, int threads) {
 std::shared_ptr<const CommonTreeD> common_of(const SceneDParts& scene, const Group& group, int threads) {
   std::vector<Member> members;
   CommonTreeD common;
+  bool stays = true;
   for (const std::uint32_t i : group.instances) {
     const std::uint32_t geometry = scene.instances[i].geometry;
     members.push_back({{0, geometry, i}, empty_box, static_cast<std::uint32_t>(triangles_of(scene, i))});
-    common.geometries.push_back(scene.geometries[geometry]);
+    stays = stays && !scene.is_changed[geometry];
   }
   for (const auto& before : scene.commons)
-    if (before->mask == group.mask && before->geometries == common.geometries &&
-        std::ranges::equal(group.instances, std::span(before->members).first(members.size()), {}, {},
-                           &Member::instance))
+    if (stays && before->mask == group.mask &&
+        std::ranges::equal(group.instances, std::span(before->members).first(before->members.size() - 1), {},
+                           {}, &Member::instance))
       return before;
   static_cast<MemberTable&>(common) = MemberTable(std::move(members));
-  common.mask = group.mask, common.tree = common.geometries[0]->tree;
+  common.mask = group.mask, common.tree = scene.geometries[common.members[0].geometry]->tree;
   if (group.instances.size() > 1) {
-    common.tree = std::make_shared<const BvhD>(united(common, threads));
+    common.tree = std::make_shared<const BvhD>(united(scene, common.members, threads));
     common.own_bytes = common.tree->bytes();
   }
   return std::make_shared<const CommonTreeD>(std::move(common));
@@ -125,6 +127,7 @@ void update_parts(SceneDParts& scene, int threads) {
   InstanceBoxes apart = boxes_of(bounds, is_apart), together = boxes_of(bounds, is_together);
   scene.commons = std::move(commons), scene.boxes = std::move(boxes);
   scene.apart = std::move(apart), scene.together = std::move(together);
+  std::fill(scene.is_changed.begin(), scene.is_changed.end(), false);
   scene.is_current = true;
 }
 

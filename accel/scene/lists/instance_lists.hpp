@@ -71,10 +71,7 @@ class InstanceLists {
   // Appends what a tree has of rays in its space.
   void find_in(const Bvh& tree, const MemberNumbers& numbers, const std::vector<std::uint32_t>& picked,
                const std::vector<Ray>& rays) {
-    if (const Words* const words = query_.scene.words_of(numbers.members[0].geometry))
-      options_.masks = *words;
-    else
-      options_.masks = {};
+    options_.masks = query_.scene.masks_in(numbers.members[0].geometry);
     append_lists<Item>(found_, TreeAccess::traced(tree), numbers, picked, rays, query_.skip, options_);
   }
 

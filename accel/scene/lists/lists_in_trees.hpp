@@ -88,6 +88,32 @@ void append_lists(std::vector<FoundItem<Item>>& found, const Tree& tree, const M
     for (const Item& item : lists[k]) found.push_back({in_scene(item, numbers.owners), picked[k]});
 }
 
+// A call for lists in a scene, whose options are found good.
+template <class T, class Query>
+struct SceneListCall {
+  CheckedCall<T, ListOptions> checked;
+  Query query;
+
+  template <class Parts>
+  SceneListCall(const char* call, const Parts& scene, const RaySourceOf<T>& rays, const ListOptions& options)
+      : checked(call, rays, options),
+        query(checked_query(scene, {.path = options.path,
+                                    .threads = options.threads,
+                                    .facing = options.facing,
+                                    .skip = options.skip,
+                                    .mask = options.mask,
+                                    .masks = options.masks})) {
+    checked_queries<T>(call, options);
+  }
+  // All rays; inactive ones hit nothing.
+  std::vector<RayOf<T>> active() const {
+    std::vector<RayOf<T>> active(checked.rays.size());
+    for (std::size_t i = 0; i < active.size(); ++i)
+      if (checked.rays.takes_part(i)) active[i] = checked.rays[i];
+    return active;
+  }
+};
+
 // Items in the order of rays, t, instances and primitives, as lists of at most max_count.
 template <class Found, class Item>
 void set_lists(std::vector<Found> found, std::size_t rays, std::size_t max_count, RayLists<Item>& lists) {

@@ -5,32 +5,15 @@
 namespace raylanes {
 namespace {
 
-// A call for lists in a scene, whose options are found good.
-struct SceneListCall {
-  CheckedCall<float, ListOptions> checked;
-  SceneQuery query;
-  const CommonTree* common;  // not null: it has all that the mask sees
-
-  SceneListCall(const char* call, const SceneParts& scene, const RaySource& rays, const ListOptions& options)
-      : checked(call, rays, options),
-        query(checked_query(scene, {.path = options.path,
-                                    .threads = options.threads,
-                                    .facing = options.facing,
-                                    .skip = options.skip,
-                                    .mask = options.mask,
-                                    .masks = options.masks})),
-        common(quick_tree(scene, options.mask)) {}
-};
+using ListCall = SceneListCall<float, SceneQuery>;
 
 template <class Item>
-RayLists<SceneItem<Item>> lists_of_triangles(const SceneListCall& call) {
-  const RaySource& rays = call.checked.rays;
-  if (call.common != nullptr)
-    return lists_in_common<Item>(TreeAccess::traced(*call.common->geometry->triangles()),
-                                 call.common->numbers(), rays, call.checked.options);
-  std::vector<Ray> active(rays.size());  // the others hit nothing
-  for (std::size_t i = 0; i < active.size(); ++i)
-    if (rays.takes_part(i)) active[i] = rays[i];
+RayLists<SceneItem<Item>> lists_of_triangles(const ListCall& call) {
+  const CommonTree* const common = quick_tree(call.query.scene, call.query.mask);
+  if (common != nullptr)
+    return lists_in_common<Item>(TreeAccess::traced(*common->geometry->triangles()), common->numbers(),
+                                 call.checked.rays, call.checked.options);
+  const std::vector<Ray> active = call.active();
   RayLists<SceneItem<Item>> lists;
   set_lists(InstanceLists<Item>(call.query, active, call.checked.options).find(), active.size(),
             call.checked.options.max_count, lists);
@@ -91,7 +74,7 @@ bool is_crossing(const CrossingJudge<float>& judge, const SceneParts& parts, Ray
 // Crossings of triangles.
 RayLists<SceneCrossing> crossings_in(const char* name, const SceneParts& scene, const RaySource& rays,
                                      const ListOptions& options) {
-  const SceneListCall call(name, scene, rays, options);
+  const ListCall call(name, scene, rays, options);
   if (!has_triangles_alone(scene))
     throw std::invalid_argument(std::string(name) +
                                 ": a scene has crossings of triangles alone, and this one places "
@@ -113,14 +96,14 @@ struct SurfaceDoor<Scene> {
       auto& judge = judges[hit.geometry];
       if (!judge) {
         TraceOptions of_geometry = options;
-        if (const Words* const words = parts.words_of(hit.geometry)) of_geometry.masks = *words;
+        of_geometry.masks = parts.masks_in(hit.geometry);
         judge.emplace(TreeAccess::traced(*scene.tree(hit.geometry)), of_geometry);
       }
       return is_crossing(*judge, parts, ray, hit, skipped, options);
     };
   }
   RayLists<SceneHit> hits(const RaySource& rays, const ListOptions& options) const {
-    const SceneListCall call("all_hits", parts, rays, options);
+    const ListCall call("all_hits", parts, rays, options);
     if (has_triangles_alone(parts)) return lists_of_triangles<Hit>(call);
     return hits_seen_by_filter(scene, call.checked.rays, call.checked.options);
   }

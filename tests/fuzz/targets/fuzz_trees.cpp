@@ -1,8 +1,8 @@
-// Trees as bytes that were damaged, with and without a checksum that covers it up: an error of one line, or a tree that
-// can be traced and refitted without a fault. And trees of any finite mesh, refitted to another: the hits of a tree
-// built over that.
-#include <raylanes/doubles.hpp>
+// Trees and scenes as bytes that were damaged, with and without a checksum that covers it up: an error of one line, or
+// a tree that can be traced and refitted without a fault. And trees of any finite mesh, refitted to another: the hits
+// of a tree built over that.
 #include <raylanes/kdtree.hpp>
+#include <raylanes/scene_d.hpp>
 
 #include "../../support/limited_memory.hpp"
 #include "../../support/same_bytes.hpp"
@@ -113,13 +113,41 @@ void use(Bytes& bytes, BvhD& tree, const DoubleMesh& mesh, std::span<const RayD>
   }
 }
 
+// Hits name what the scene has.
+template <class AnyScene, class T>
+void use_scene(AnyScene& scene, const oracle::MeshOf<T>& mesh, std::span<const RayOf<T>> rays) {
+  std::vector<typename AnyScene::Hit> hits(rays.size());
+  std::vector<decltype(scene.closest_point({}))> closest(rays.size());
+  const auto walk = [&] {
+    scene.closest(rays, hits), scene.all_hits(rays);
+    for (const auto& hit : hits)
+      if (hit && (hit.instance >= scene.instance_count() || hit.geometry != scene.geometry_of(hit.instance)))
+        fail("a hit of an instance that is not there");
+  };
+  walk();
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) scene.levels_of(i);
+  try {
+    scene.closest_points({rays.data(), rays.size(), sizeof rays[0]}, closest);
+    scene.refit(0, mesh.vertices, mesh.triangles), scene.move(0, {}), scene.update();
+    walk();
+  } catch (const std::invalid_argument&) {
+  }
+}
+void use(Bytes&, Scene& scene, const Mesh& mesh, std::span<const Ray> rays, TriangleTest, std::size_t) {
+  use_scene<Scene, float>(scene, mesh, rays);
+}
+void use(Bytes&, SceneD& scene, const DoubleMesh& mesh, std::span<const RayD> rays, TriangleTest,
+         std::size_t) {
+  use_scene<SceneD, double>(scene, mesh, rays);
+}
+
 template <class Tree, class AnyMesh, class AnyRay>
 void load_damaged(Bytes& bytes, std::string file, const AnyMesh& mesh, const std::vector<AnyRay>& rays,
                   TriangleTest test) {
   const std::string before = file;
   for (std::size_t left = 1 + bytes.below(4); left > 0; --left) damage(bytes, file);
   const bool is_covered_up = bytes.chance(200);
-  if (is_covered_up) put_right_checksum(file);
+  if (is_covered_up) put_right_checksums(file);
   std::istringstream stream(file);
   try {
     Tree tree = Tree::load(stream);
@@ -133,6 +161,20 @@ void load_damaged(Bytes& bytes, std::string file, const AnyMesh& mesh, const std
   }
 }
 
+// A mesh in some places, and all that within itself.
+template <class AnyScene, class AnyMesh, class AnyRay>
+void load_damaged_scene(Bytes& bytes, const AnyMesh& mesh, const AnyMesh& other,
+                        const std::vector<AnyRay>& rays) {
+  AnyScene scene;
+  scene.add(mesh.vertices, mesh.triangles), scene.place(0);
+  const decltype(scene.transform_of(0)) turned{{{0, 0, 1, 1}, {0, 1, 0, 0}, {-1, 0, 0, 0.5}}};
+  scene.place(0, turned, bytes.byte());
+  if (bytes.chance(160)) scene.place(scene.add(scene), turned);
+  std::ostringstream saved;
+  scene.save(saved);
+  load_damaged<AnyScene>(bytes, saved.str(), other, rays, TriangleTest::exact);
+}
+
 void load_damaged_doubles(Bytes& bytes) {
   DoubleCoordinates coordinates(bytes);
   const DoubleMesh mesh = any_double_mesh(bytes, coordinates);
@@ -141,6 +183,7 @@ void load_damaged_doubles(Bytes& bytes) {
     if (bytes.chance(64)) vertex = other.vertices[0];
   std::vector<RayD> rays;
   for (std::size_t i = 0; i < 24; ++i) rays.push_back(any_double_ray(bytes, coordinates, mesh));
+  if (bytes.chance(100)) return load_damaged_scene<SceneD>(bytes, mesh, other, rays);
   std::ostringstream saved;
   BvhD(mesh.vertices, mesh.triangles).save(saved);
   load_damaged<BvhD>(bytes, saved.str(), other, rays, TriangleTest::exact);
@@ -174,6 +217,10 @@ int fuzz_trees(const std::uint8_t* data, std::size_t size) {
   const auto test = any_tree_test(bytes);
   const auto builder = static_cast<TreeBuilder>(bytes.below(tree_builder_names.size()));
   const BuildOptions options{.builder = builder, .optimize = bytes.chance(96)};
+  if (bytes.chance(32)) {
+    load_damaged_scene<Scene>(bytes, mesh, other, rays);
+    return 0;
+  }
   std::ostringstream saved;
   if (bytes.chance(64)) {
     const auto kd_builder = static_cast<KdBuilder>(bytes.below(kd_builder_names.size()));

@@ -202,13 +202,14 @@ void add_refits(Calls& calls, const std::string& of, Tree& tree, const AnyMesh& 
   };
 }
 
-// The calls of scenes of triangles, but nearest hits; `tree` may be a part.
-template <class T, class AnyScene, class Tree, class AnyHit, class Closest>
-void add_scene(Calls& calls, const std::string& of, AnyScene& scene, Tree tree, Batch<T, AnyHit>& b,
+// The calls of scenes of triangles, but nearest hits; part 0 is of the mesh.
+template <class T, class AnyScene, class AnyMesh, class AnyHit, class Closest>
+void add_scene(Calls& calls, const std::string& of, AnyScene& scene, const AnyMesh& mesh, Batch<T, AnyHit>& b,
                std::vector<Closest>& closest, const Path* path, int threads) {
   const ListOptions lists{.path = path, .threads = threads};
   const LocateOptions places{.path = path, .threads = threads};
-  const auto part = std::make_shared<const Tree>(std::move(tree));
+  using Tree = std::conditional_t<sizeof(T) == 4, Bvh, BvhD>;
+  const auto part = std::make_shared<const Tree>(mesh.vertices, mesh.triangles);
   calls[of + "::all_hits"] = [&, lists] { scene.all_hits(b.rays, lists), scene.all_hits(b.arrays, lists); };
   calls[of + "::crossings"] = [&, lists] { scene.crossings(b.arrays, lists); };
   calls[of + "::count_crossings"] = [&, lists] { scene.count_crossings(b.rays, b.counts, lists); };
@@ -247,6 +248,31 @@ void add_scene(Calls& calls, const std::string& of, AnyScene& scene, Tree tree, 
   calls[of + "::geometry_of"] = [&] { scene.geometry_of(0); };
   calls[of + "::transform_of"] = [&] { scene.transform_of(0); };
   calls[of + "::mask_of"] = [&] { scene.mask_of(0); };
+  calls[of + "::refit"] = [&, threads] {
+    scene.refit(0, mesh.vertices, mesh.triangles, threads), scene.update();
+  };
+  calls[of + "::set_triangle_masks"] = [&, path, threads] {
+    const std::vector<std::uint32_t> masks(3, 1);
+    AnyScene other = scene;
+    other.set_triangle_masks(0, masks), other.update(threads);
+    std::vector<typename AnyScene::Hit> hits(b.rays.size());
+    other.closest(b.rays, hits, {.path = path, .threads = threads});
+  };
+  calls[of + "::set_moving"] = [&, threads] { scene.set_moving(1, true), scene.update(threads); };
+  calls[of + "::report"] = [&] { scene.report(); };
+  calls[of + "::levels_of"] = [&] { scene.levels_of(0); };
+  calls[of + "::save"] = calls[of + "::load"] = [&] {
+    std::stringstream file;
+    scene.save(file), AnyScene::load(file);
+  };
+  calls[of + "::add of a scene"] = [&, threads] {
+    using Numbers = std::numeric_limits<T>;
+    AnyScene other;
+    other.place(other.add(scene), {{{Numbers::max(), Numbers::denorm_min(), 0, Numbers::max()},
+                                    {0, 3, 0, 0},
+                                    {0, 0, Numbers::min() / 3, 1}}});
+    other.update(threads);
+  };
 }
 
 // Meshes with all that is odd: holes, tiny and huge coordinates, triangles without area; all on a line; nothing.
@@ -327,8 +353,7 @@ TEST_F(Unmasked, scenes_of_doubles) {
       scene.place(0, stands ? TransformD() : TransformD{{{1, 0, 0, 1}, {0, 0.3, 0, 0}, {0, 0, 1, 1e-310}}});
       scene.update(threads);
       add_nearest<double>(calls, "SceneD", scene, b, TraceOptionsD{.path = path, .threads = threads});
-      add_scene<double>(calls, "SceneD", scene, BvhD(mesh.vertices, mesh.triangles), b, closest, path,
-                        threads);
+      add_scene<double>(calls, "SceneD", scene, mesh, b, closest, path, threads);
       run(calls);
     }
   });
@@ -369,31 +394,14 @@ TEST_F(Unmasked, scenes_spheres_and_boxes) {
     calls.clear();
     add_nearest<float>(calls, "Scene", solid, of_scene, TraceOptions{.path = path, .threads = threads});
     std::vector<SceneClosestPoint> closest(of_scene.points.size());
-    add_scene<float>(calls, "Scene", solid, Bvh(ball), of_scene, closest, path, threads);
+    add_scene<float>(calls, "Scene", solid, ball, of_scene, closest, path, threads);
     calls["Scene::all_hits of spheres"] = [&] {
       scene.all_hits(of_scene.rays, {.path = path, .threads = threads});
     };
     calls["Scene::add of others"] = [&] {
       Scene().add(SphereTree(spheres));
-      Scene other;
-      other.place(other.add(solid), {{{3e38f, 1e-40f, 0, 3e38f}, {0, 3, 0, 0}, {0, 0, 1e-30f, 1}}});
-      other.update(threads);
-    };
-    calls["Scene::refit"] = [&] { solid.refit(0, ball.vertices, ball.triangles, threads), solid.update(); };
-    calls["Scene::set_triangle_masks"] = [&] {
-      const std::vector<std::uint32_t> masks(3, 1);
-      Scene other = solid;
-      other.set_triangle_masks(0, masks), other.update(threads);
-      std::vector<SceneHit> hits(of_scene.rays.size());
-      other.closest(of_scene.rays, hits, {.path = path, .threads = threads});
-    };
-    calls["Scene::set_moving"] = [&] { solid.set_moving(1, true), solid.update(threads); };
-    calls["Scene::report"] = [&] { solid.report(); };
-    calls["Scene::levels_of"] = [&] { solid.levels_of(0); };
-    calls["Scene::save"] = calls["Scene::load"] = [&] {
       std::stringstream file;
-      scene.save(file);
-      Scene::load(file);
+      scene.save(file), Scene::load(file);
     };
     run(calls);
   });

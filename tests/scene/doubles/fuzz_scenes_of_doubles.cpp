@@ -1,11 +1,15 @@
 // Rays and points of any bits through scenes of doubles in places of any bits, on any path: the hits are as if all
 // instances were asked one after the other, nothing is written elsewhere.
+#include <map>
+#include <sstream>
+
 #include <raylanes/scene_d.hpp>
 
 #include "../../../accel/scene/doubles/instance_d.hpp"
 #include "../../fuzz/any_doubles.hpp"
 #include "../../fuzz/fence.hpp"
 #include "../../support/same_bytes.hpp"
+#include "../any_nesting.hpp"
 
 namespace raylanes::testing {
 namespace {
@@ -23,14 +27,20 @@ TransformD any_transform_d(Bytes& bytes, DoubleCoordinates& coordinates) {
   return transform;
 }
 
+// The masks of the triangles of geometries.
+using MasksOfParts = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+
 // All hits of a ray, in order, by the tree of each instance.
-std::vector<SceneHitD> hits_of(const SceneD& scene, const RayD& ray, std::uint32_t mask, Facing facing) {
+std::vector<SceneHitD> hits_of(const SceneD& scene, const MasksOfParts& masks, const RayD& ray,
+                               std::uint32_t mask, Facing facing) {
   std::vector<SceneHitD> all;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const InstanceD instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
     const BvhD& tree = scene.tree(instance.geometry);
     if ((instance.mask & mask) == 0 || !(bounds_of(instance, tree.bounds()).box.lo[0] < HUGE_VAL)) continue;
-    const auto lists = tree.all_hits(std::vector{in_part(instance, ray)}, {.facing = facing});
+    ListOptions options{.facing = facing, .mask = mask};
+    if (const auto found = masks.find(instance.geometry); found != masks.end()) options.masks = found->second;
+    const auto lists = tree.all_hits(std::vector{in_part(instance, ray)}, options);
     for (const HitD& hit : lists.items)
       all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
   }
@@ -39,7 +49,8 @@ std::vector<SceneHitD> hits_of(const SceneD& scene, const RayD& ray, std::uint32
   return all;
 }
 
-void expect_hits(const SceneD& scene, const std::vector<RayD>& rays, const TraceOptionsD& options) {
+void expect_hits(const SceneD& scene, const MasksOfParts& masks, const std::vector<RayD>& rays,
+                 const TraceOptionsD& options) {
   static Fence fence(max_rays * sizeof(SceneHitD)), byte_fence(max_rays);
   const std::span<SceneHitD> hits(fence.last<SceneHitD>(rays.size()), rays.size());
   const std::span<std::uint8_t> occluded(byte_fence.last<std::uint8_t>(rays.size()), rays.size());
@@ -53,7 +64,7 @@ void expect_hits(const SceneD& scene, const std::vector<RayD>& rays, const Trace
       scene.all_hits(rays, {.facing = options.facing, .path = options.path, .mask = options.mask});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const std::string ray = std::string(options.path->name) + ": ray " + std::to_string(i) + ": ";
-    const std::vector<SceneHitD> all = hits_of(scene, rays[i], options.mask, options.facing);
+    const std::vector<SceneHitD> all = hits_of(scene, masks, rays[i], options.mask, options.facing);
     const auto at = [&](std::size_t k) { return k < all.size() ? all[k] : SceneHitD(); };
     if (!same_bytes(nearest[i], at(0)) || (occluded[i] != 0) == all.empty())
       fail(ray + "another nearest hit");
@@ -89,6 +100,29 @@ void expect_points(const SceneD& scene, const std::vector<RayD>& rays, const Tra
   }
 }
 
+SceneD loaded_again(const SceneD& scene) {
+  std::stringstream file, again;
+  scene.save(file);
+  SceneD loaded = SceneD::load(file);
+  loaded.save(again);
+  if (again.str() != file.str()) fail("a loaded scene is saved as another one");
+  return loaded;
+}
+
+// Masks for the triangles of a geometry, which is no scene.
+MasksOfParts some_masks(Bytes& bytes, SceneD& scene) {
+  const auto geometry = static_cast<std::uint32_t>(bytes.below(scene.geometry_count()));
+  std::vector<std::uint32_t> masks(1 + bytes.below(20));
+  for (std::uint32_t& mask : masks) mask = bytes.byte();
+  try {
+    scene.set_triangle_masks(geometry, masks);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+  scene.update();
+  return {{geometry, masks}};
+}
+
 }  // namespace
 }  // namespace raylanes::testing
 
@@ -111,8 +145,14 @@ int fuzz_scenes_of_doubles(const std::uint8_t* data, std::size_t size) {
     scene.move(0, any_transform_d(bytes, coordinates)), scene.set_mask(0, bytes.byte());
     scene.replace(1, BvhD(meshes[0].vertices, meshes[0].triangles));
     if (bytes.chance(64)) scene = copy;
+    if (bytes.chance(64)) scene.refit(0, meshes[0].vertices, meshes[0].triangles);
     scene.update();
   }
+  for (std::size_t levels = bytes.below(8); levels > 5; --levels)
+    scene = within_another(bytes, scene, [&] { return any_transform_d(bytes, coordinates); });
+  if (bytes.chance(64)) scene = loaded_again(scene);
+  MasksOfParts masks;
+  if (bytes.chance(64)) masks = some_masks(bytes, scene);
   std::vector<RayD> rays;
   for (std::size_t n = bytes.below(max_rays); rays.size() < n;)
     rays.push_back(any_double_ray(bytes, coordinates, meshes[rays.size() % 2]));
@@ -120,7 +160,7 @@ int fuzz_scenes_of_doubles(const std::uint8_t* data, std::size_t size) {
                               .threads = bytes.chance(32) ? 2 : 1,
                               .facing = bytes.chance(64) ? Facing::back : Facing::any,
                               .mask = bytes.chance(128) ? ~0u : bytes.byte()};
-  expect_hits(scene, rays, options);
+  expect_hits(scene, masks, rays, options);
   if (bytes.chance(64)) expect_points(scene, rays, options);
   return 0;
 }

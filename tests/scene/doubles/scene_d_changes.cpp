@@ -1,4 +1,6 @@
 // Scenes of doubles that are made, change and are copied: what calls refuse, memory that runs out, trees that are kept.
+#include <sstream>
+
 #include <raylanes/scene_d.hpp>
 
 #include "../../doubles/both_numbers.hpp"
@@ -67,6 +69,8 @@ TEST(ScenesOfDoubles, refuse_what_is_wrong) {
   EXPECT_THROW(scene.move(2, {}), std::out_of_range);
   EXPECT_THROW(scene.set_mask(2, 1), std::out_of_range);
   EXPECT_THROW(scene.replace(1, BvhD()), std::out_of_range);
+  EXPECT_THROW(scene.set_moving(2), std::out_of_range);
+  EXPECT_THROW(scene.refit(0, points, IndexView()), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(scene.tree(1)), std::out_of_range);
   EXPECT_NO_THROW(scene.closest(rays, hits));  // nothing of that was a change
 }
@@ -161,6 +165,28 @@ TEST(ScenesOfDoubles, survive_memory_that_runs_out) {
       expect_clean("innermost_parts", [&] { scene.innermost_parts(points, parts, {.threads = threads}); });
     }
     expect_clean("copy", [&] { SceneD(scene).update(); });
+    // Each of these does all of it, or nothing.
+    const BvhD& tree = scene.tree(0);
+    expect_clean("add a scene", [&] { scene.add(scene); });
+    EXPECT_EQ(scene.geometry_count(), 3u);
+    expect_clean("place it", [&] { scene.place(1, beside); });
+    EXPECT_EQ(scene.instance_count(), 5u);
+    const DoubleMesh mesh = moved(cube(-1, 1), 1, {});
+    expect_clean("refit", [&] {
+      EXPECT_EQ(&scene.tree(0), &tree);
+      scene.refit(0, mesh.vertices, mesh.triangles);
+    });
+    expect_clean("update", [&] { scene.update(); });
+    std::ostringstream file;
+    scene.save(file);
+    expect_clean("load", [&] {
+      std::istringstream stream(file.str());
+      SceneD::load(stream);
+    });
+    const std::uint32_t masks[] = {0, 1};
+    expect_clean("set_triangle_masks", [&] { scene.set_triangle_masks(0, masks); });
+    scene.update();
+    EXPECT_GT(scene.closest(rays[20], {.mask = 2}).primitive, 1u);
   }
 }
 

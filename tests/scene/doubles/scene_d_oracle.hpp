@@ -56,15 +56,36 @@ struct ExactMap {
   }
 };
 
-// A scene and its meshes.
+// A scene and its meshes, by geometry; none of scenes.
 struct PartsD {
   SceneD scene;
   std::vector<DoubleMesh> meshes;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> masks;  // of the triangles of geometries
 
   std::uint32_t add(const DoubleMesh& mesh) {
     meshes.push_back(mesh);
     return meshes.size() % 2 == 0 ? scene.add(mesh.vertices, mesh.triangles)
                                   : scene.add(BvhD(mesh.vertices, mesh.triangles));
+  }
+  std::uint32_t add(const PartsD& other) {
+    const std::uint32_t number = scene.add(other.scene);
+    const PartsD from = other;
+    meshes.emplace_back();
+    meshes.insert(meshes.end(), from.meshes.begin(), from.meshes.end());
+    for (const auto& [geometry, words] : from.masks) masks[number + 1 + geometry] = words;
+    return number;
+  }
+  void set_masks(std::uint32_t geometry, const std::vector<std::uint32_t>& words) {
+    masks[geometry] = words;
+    scene.set_triangle_masks(geometry, words);
+  }
+  // With a point in the place of each triangle that the mask does not see.
+  DoubleMesh seen(std::uint32_t geometry, std::uint32_t mask) const {
+    DoubleMesh seen = meshes[geometry];
+    if (const auto found = masks.find(geometry); found != masks.end())
+      for (std::size_t i = 0; i < std::min(found->second.size(), seen.triangles.size()); ++i)
+        if ((found->second[i] & mask) == 0) seen.triangles[i] = {0, 0, 0};
+    return seen;
   }
 };
 
@@ -107,7 +128,7 @@ struct ExpectedD {
   void add(const PartsD& parts, const RayD& given, std::uint32_t instance, const ExactMap& map,
            std::size_t ray) {
     const std::uint32_t geometry = parts.scene.geometry_of(instance);
-    const DoubleMesh& mesh = parts.meshes[geometry];
+    const DoubleMesh mesh = parts.seen(geometry, mask);
     const RayD mapped = map.of_ray(given);
     const bool skips = !skip.empty() && skip[ray].instance == instance;
     const std::uint32_t without = skips ? skip[ray].primitive : no_primitive;

@@ -89,6 +89,14 @@ PartsD nested_solids(Random& random, double scale, const Double3& offset) {
   parts.scene.update();
   return parts;
 }
+// The same within another scene, as it is, and turned and larger.
+PartsD within_another(const PartsD& parts) {
+  PartsD outer;
+  outer.add(moved(cube(-1, 1), 1, {})), outer.add(parts);
+  const TransformD turned{{{0, -1.25, 0, 0}, {1.25, 0, 0, 0}, {0, 0, 1.25, 0}}};
+  outer.scene.place(1, turned, 0b011), outer.scene.place(1), outer.scene.update();
+  return outer;
+}
 std::vector<Double3> points_of(const PartsD& parts, std::size_t count) {
   std::vector<Double3> points = points_for(PlacedMesh(parts).mesh, count, 91);
   std::erase_if(points, [](const Double3& p) { return std::abs(p[0]) > 1e200; });
@@ -105,7 +113,8 @@ TEST(PointsInScenesOfDoubles, have_closest_points_within_bounds) {
   for (const auto& [scale, offset] : places) {
     SCOPED_TRACE(scale);
     Random random(191);
-    const PartsD parts = nested_solids(random, scale, offset);
+    const PartsD single = nested_solids(random, scale, offset),
+                 parts = scale == 1 ? within_another(single) : single;
     const std::vector<Double3> points = points_of(parts, by_level<std::size_t>(15, 30, 150));
     for (const std::uint32_t mask : {~0u, 0b010u}) expect_closest(parts, points, mask);
     for (const double bad : {std::nan(""), HUGE_VAL})
@@ -148,7 +157,8 @@ TEST(PointsInScenesOfDoubles, are_in_the_parts_that_rational_numbers_say) {
   for (const auto& [scale, offset] : places) {
     SCOPED_TRACE(scale);
     Random random(192);
-    const PartsD parts = nested_solids(random, scale, offset);
+    const PartsD single = nested_solids(random, scale, offset),
+                 parts = scale == 1 ? within_another(single) : single;
     const std::vector<Double3> points = points_of(parts, by_level<std::size_t>(30, 60, 200));
     for (const std::uint32_t mask : {~0u, 0b101u})
       on_each_path([&](const Path* path, int threads) {
