@@ -8,8 +8,8 @@
 namespace raylanes::c::RAYLANES_NUMBERS {
 extern "C" {
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_save, raylanes_bvhd_save,
-                              raylanes_scene_save, )(const RAYLANES_HANDLE* handle, void* buffer,
+raylanes_status RAYLANES_CALL(raylanes_bvh_save, raylanes_bvhd_save, raylanes_scene_save,
+                              raylanes_scene_d_save)(const RAYLANES_HANDLE* handle, void* buffer,
                                                      std::size_t capacity, std::size_t* size) {
   return status_of([&] {
     require_pointer("size", size);
@@ -22,16 +22,16 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_save, raylanes_bvhd_save,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_save_file, raylanes_bvhd_save_file,
-                              raylanes_scene_save_file, )(const RAYLANES_HANDLE* handle, const char* file) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_save_file, raylanes_bvhd_save_file, raylanes_scene_save_file,
+                              raylanes_scene_d_save_file)(const RAYLANES_HANDLE* handle, const char* file) {
   return status_of([&] {
     const Tree& saved = object_of(handle);
     with_file<std::ofstream>(file, [&](std::ostream& stream) { saved.save(stream); });
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_load, raylanes_bvhd_load,
-                              raylanes_scene_load, )(RAYLANES_HANDLE** handle, const void* bytes,
+raylanes_status RAYLANES_CALL(raylanes_bvh_load, raylanes_bvhd_load, raylanes_scene_load,
+                              raylanes_scene_d_load)(RAYLANES_HANDLE** handle, const void* bytes,
                                                      std::size_t size) {
   return status_of([&] {
     make(kind, handle, [&] {
@@ -43,8 +43,8 @@ raylanes_status RAYLANES_CALL(raylanes_bvh_load, raylanes_bvhd_load,
   });
 }
 
-raylanes_status RAYLANES_CALL(raylanes_bvh_load_file, raylanes_bvhd_load_file,
-                              raylanes_scene_load_file, )(RAYLANES_HANDLE** handle, const char* file) {
+raylanes_status RAYLANES_CALL(raylanes_bvh_load_file, raylanes_bvhd_load_file, raylanes_scene_load_file,
+                              raylanes_scene_d_load_file)(RAYLANES_HANDLE** handle, const char* file) {
   return status_of([&] {
     make(kind, handle, [&] {
       return with_file<std::ifstream>(file,

@@ -12,6 +12,7 @@ static_assert(sizeof(typename Tree::Crossing) == sizeof(RAYLANES_CROSSING));
 static_assert(offsetof(RAYLANES_HIT, instance) - offsetof(RAYLANES_HIT, primitive) == to_instance_of_hits);
 static_assert(offsetof(RAYLANES_HIT, instance) == offsetof(AnyHit, instance));
 static_assert(offsetof(RAYLANES_CLOSEST, instance) == offsetof(AnyClosestPoint, instance));
+static_assert(sizeof(SceneReport) == sizeof(raylanes_scene_report));
 
 Tree& changed(RAYLANES_HANDLE* handle) {
   require_pointer("scene", handle);
@@ -27,6 +28,22 @@ AnyTransform transform_of(const Number* numbers) {
   AnyTransform transform;
   if (numbers != nullptr) std::memcpy(transform.row, numbers, sizeof transform.row);
   return transform;
+}
+
+// Adds a scene, with the caller's tests that its primitives may have.
+template <class Handle>
+std::uint32_t add_whole(Handle* scene, const Handle* added) {
+  Tree& to = changed(scene);
+  const Tree& from = object_of(added);
+  if constexpr (requires { scene->tests; }) {
+    auto tests = scene->tests;
+    if (added != scene) tests.insert(tests.end(), added->tests.begin(), added->tests.end());
+    const std::uint32_t number = to.add(from);
+    scene->tests = std::move(tests);
+    return number;
+  } else {
+    return to.add(from);
+  }
 }
 
 // Writes what find() returns.
@@ -90,6 +107,29 @@ raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_add_tree,
   return tell("geometry", geometry, [&] { return changed(scene).add(shared_tree(tree)); });
 }
 
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_add_scene,
+                                    raylanes_scene_d_add_scene)(RAYLANES_HANDLE* scene,
+                                                                const RAYLANES_HANDLE* added,
+                                                                std::uint32_t* geometry) {
+  return tell("geometry", geometry, [&] { return add_whole(scene, added); });
+}
+
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_refit, raylanes_scene_d_refit)(
+    RAYLANES_HANDLE* scene, std::uint32_t geometry, const void* vertices, std::size_t vertex_count,
+    std::size_t vertex_stride, const void* triangles, std::size_t triangle_count, std::size_t triangle_stride,
+    std::int32_t threads) {
+  return status_of([&] {
+    changed(scene).refit(geometry, vertices_of("vertices", vertices, vertex_count, vertex_stride),
+                         triangles_of(triangles, triangle_count, triangle_stride), threads);
+  });
+}
+
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_set_triangle_masks, raylanes_scene_d_set_triangle_masks)(
+    RAYLANES_HANDLE* scene, std::uint32_t geometry, const std::uint32_t* masks, std::size_t n) {
+  return status_of(
+      [&] { changed(scene).set_triangle_masks(geometry, span_of<const std::uint32_t>("masks", masks, n)); });
+}
+
 raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_replace_tree,
                                     raylanes_scene_d_replace_tree)(RAYLANES_HANDLE* scene,
                                                                    std::uint32_t geometry,
@@ -115,6 +155,13 @@ raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_set_mask,
                                     raylanes_scene_d_set_mask)(RAYLANES_HANDLE* scene, std::uint32_t instance,
                                                                std::uint32_t mask) {
   return status_of([&] { changed(scene).set_mask(instance, mask); });
+}
+
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_set_moving,
+                                    raylanes_scene_d_set_moving)(RAYLANES_HANDLE* scene,
+                                                                 std::uint32_t instance,
+                                                                 std::int32_t moving) {
+  return status_of([&] { changed(scene).set_moving(instance, moving != 0); });
 }
 
 raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_update, raylanes_scene_d_update)(RAYLANES_HANDLE* scene,
@@ -158,6 +205,34 @@ raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_mask_of,
                                     raylanes_scene_d_mask_of)(const RAYLANES_HANDLE* scene,
                                                               std::uint32_t instance, std::uint32_t* mask) {
   return tell("mask", mask, [&] { return object_of(scene).mask_of(instance); });
+}
+
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_levels_of,
+                                    raylanes_scene_d_levels_of)(const RAYLANES_HANDLE* scene,
+                                                                std::uint32_t instance,
+                                                                raylanes_instance_level* levels,
+                                                                std::size_t capacity, std::size_t* count) {
+  return status_of([&] {
+    require_pointer("count", count);
+    const auto to = span_of<InstanceLevel>("levels", levels, capacity);
+    const std::vector<InstanceLevel> all = object_of(scene).levels_of(instance);
+    *count = all.size();
+    if (all.size() > capacity)
+      throw SmallBuffer{capacity * sizeof(InstanceLevel), all.size() * sizeof(InstanceLevel)};
+    std::ranges::copy(all, to.begin());
+  });
+}
+
+raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_describe,
+                                    raylanes_scene_d_describe)(const RAYLANES_HANDLE* scene,
+                                                               raylanes_scene_report* report,
+                                                               std::size_t size) {
+  return status_of([&] {
+    const SceneReport of_scene = object_of(scene).report();
+    require_pointer("report", report);
+    require_options_size(size, sizeof of_scene);
+    std::memcpy(report, &of_scene, size);
+  });
 }
 
 raylanes_status RAYLANES_SCENE_CALL(raylanes_scene_normals,

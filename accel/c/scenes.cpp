@@ -51,7 +51,6 @@ SphereTree spheres_of(const void* spheres, std::size_t n, std::size_t stride,
 }
 
 static_assert(sizeof(Sphere) == sizeof(raylanes_sphere) && sizeof(Box) == 6 * sizeof(float));
-static_assert(sizeof(SceneReport) == sizeof(raylanes_scene_report));
 static_assert(sizeof(SceneStretch) == sizeof(raylanes_scene_stretch));
 
 }  // namespace
@@ -82,68 +81,10 @@ raylanes_status raylanes_scene_add_primitives(raylanes_scene* scene, const void*
   });
 }
 
-raylanes_status raylanes_scene_add_scene(raylanes_scene* scene, const raylanes_scene* added,
-                                         std::uint32_t* geometry) {
-  return tell("geometry", geometry, [&] {
-    Scene& to = changed(scene);
-    const Scene& from = object_of(added);
-    auto tests = scene->tests;
-    if (added != scene) tests.insert(tests.end(), added->tests.begin(), added->tests.end());
-    const std::uint32_t number = to.add(from);
-    scene->tests = std::move(tests);
-    return number;
-  });
-}
-
 raylanes_status raylanes_scene_replace_spheres(raylanes_scene* scene, std::uint32_t geometry,
                                                const void* spheres, std::size_t n, std::size_t stride,
                                                const raylanes_build_options* options) {
   return status_of([&] { changed(scene).replace(geometry, spheres_of(spheres, n, stride, options)); });
-}
-
-raylanes_status raylanes_scene_refit(raylanes_scene* scene, std::uint32_t geometry, const void* vertices,
-                                     std::size_t vertex_count, std::size_t vertex_stride,
-                                     const void* triangles, std::size_t triangle_count,
-                                     std::size_t triangle_stride, std::int32_t threads) {
-  return status_of([&] {
-    changed(scene).refit(geometry, vertices_of("vertices", vertices, vertex_count, vertex_stride),
-                         triangles_of(triangles, triangle_count, triangle_stride), threads);
-  });
-}
-
-raylanes_status raylanes_scene_set_triangle_masks(raylanes_scene* scene, std::uint32_t geometry,
-                                                  const std::uint32_t* masks, std::size_t n) {
-  return status_of(
-      [&] { changed(scene).set_triangle_masks(geometry, span_of<const std::uint32_t>("masks", masks, n)); });
-}
-
-raylanes_status raylanes_scene_set_moving(raylanes_scene* scene, std::uint32_t instance,
-                                          std::int32_t moving) {
-  return status_of([&] { changed(scene).set_moving(instance, moving != 0); });
-}
-
-raylanes_status raylanes_scene_levels_of(const raylanes_scene* scene, std::uint32_t instance,
-                                         raylanes_instance_level* levels, std::size_t capacity,
-                                         std::size_t* count) {
-  return status_of([&] {
-    require_pointer("count", count);
-    const auto to = span_of<InstanceLevel>("levels", levels, capacity);
-    const std::vector<InstanceLevel> all = object_of(scene).levels_of(instance);
-    *count = all.size();
-    if (all.size() > capacity)
-      throw SmallBuffer{capacity * sizeof(InstanceLevel), all.size() * sizeof(InstanceLevel)};
-    std::ranges::copy(all, to.begin());
-  });
-}
-
-raylanes_status raylanes_scene_describe(const raylanes_scene* scene, raylanes_scene_report* report,
-                                        std::size_t size) {
-  return status_of([&] {
-    const SceneReport of_scene = object_of(scene).report();
-    require_pointer("report", report);
-    require_options_size(size, sizeof of_scene);
-    std::memcpy(report, &of_scene, size);
-  });
 }
 
 }  // extern "C"

@@ -27,6 +27,7 @@ constexpr const char* kind = "scene";
 #define RAYLANES_CROSSING raylanes_scene_crossing_d
 #define RAYLANES_NUMBERS of_scenes_of_doubles
 #include "object_calls.hpp"
+#include "object_files.hpp"
 #include "object_points.hpp"
 #include "object_stretches.hpp"
 #include "scene_calls.hpp"

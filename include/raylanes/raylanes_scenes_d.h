@@ -38,19 +38,34 @@ RAYLANES_STATUS raylanes_scene_d_add_mesh(raylanes_scene_d* scene, const void* v
 /// Adds a tree of doubles, whose memory the scene shares. The tree may be destroyed; a refit of it changes no scene.
 RAYLANES_STATUS raylanes_scene_d_add_tree(raylanes_scene_d* scene, const raylanes_bvhd* tree,
                                           uint32_t* geometry);
+/// Adds a scene as it is, to be placed as a whole, as raylanes_scene_add_scene() does.
+RAYLANES_STATUS raylanes_scene_d_add_scene(raylanes_scene_d* scene, const raylanes_scene_d* added,
+                                           uint32_t* geometry);
 /// Replaces a geometry by a tree, whose memory the scene shares; its instances stay where they are.
 RAYLANES_STATUS raylanes_scene_d_replace_tree(raylanes_scene_d* scene, uint32_t geometry,
                                               const raylanes_bvhd* tree);
+/// Refits a geometry to another mesh with as many triangles, as raylanes_bvhd_refit() does.
+RAYLANES_STATUS raylanes_scene_d_refit(raylanes_scene_d* scene, uint32_t geometry, const void* vertices,
+                                       size_t vertex_count, size_t vertex_stride, const void* triangles,
+                                       size_t triangle_count, size_t triangle_stride, int32_t threads);
+/// Gives the triangles of a geometry masks, as raylanes_scene_set_triangle_masks() does.
+RAYLANES_STATUS raylanes_scene_d_set_triangle_masks(raylanes_scene_d* scene, uint32_t geometry,
+                                                    const uint32_t* masks, size_t n);
 
 /// Places a geometry. The transform, row by row, maps a point (x, y, z) of the geometry to the scene: x' = t[0] x +
 /// t[1] y + t[2] z + t[3], and y' and z' by the next four numbers each; NULL is the identity. An instance with mask 0
 /// is never hit. The usual mask is 0xffffffff.
+/// If the geometry is a scene, its instance j becomes instance *instance + 1 + j of this scene, as in
+/// raylanes_scene_place(). The product of both transforms is computed in pairs of doubles and rounded once.
 RAYLANES_STATUS raylanes_scene_d_place(raylanes_scene_d* scene, uint32_t geometry, const double transform[12],
                                        uint32_t mask, uint32_t* instance);
-/// Gives an instance another transform; NULL is the identity.
+/// Gives an instance another transform; NULL is the identity. If it places a scene, all instances of that move. An
+/// instance that belongs to a placed scene is an invalid argument, here and in the next two functions.
 RAYLANES_STATUS raylanes_scene_d_move(raylanes_scene_d* scene, uint32_t instance, const double transform[12]);
 /// Gives an instance another mask, from the next raylanes_scene_d_update() on.
 RAYLANES_STATUS raylanes_scene_d_set_mask(raylanes_scene_d* scene, uint32_t instance, uint32_t mask);
+/// Says that an instance will move or change otherwise, so that it is in no common tree; or, with 0, that it will not.
+RAYLANES_STATUS raylanes_scene_d_set_moving(raylanes_scene_d* scene, uint32_t instance, int32_t moving);
 /// Makes the scene ready for queries, and builds the common trees that it needs. `threads` is as in
 /// raylanes_build_options.
 RAYLANES_STATUS raylanes_scene_d_update(raylanes_scene_d* scene, int32_t threads);
@@ -69,9 +84,27 @@ RAYLANES_STATUS raylanes_scene_d_transform_of(const raylanes_scene_d* scene, uin
                                               double transform[12]);
 /// Finds the mask of an instance.
 RAYLANES_STATUS raylanes_scene_d_mask_of(const raylanes_scene_d* scene, uint32_t instance, uint32_t* mask);
+/// Writes the way to an instance from the outermost level in, as raylanes_scene_levels_of() does.
+RAYLANES_STATUS raylanes_scene_d_levels_of(const raylanes_scene_d* scene, uint32_t instance,
+                                           raylanes_instance_level* levels, size_t capacity, size_t* count);
+/// Writes how the scene is traced to the first `size` bytes of report: sizeof(raylanes_scene_report).
+RAYLANES_STATUS raylanes_scene_d_describe(const raylanes_scene_d* scene, raylanes_scene_report* report,
+                                          size_t size);
 /// Writes a box around all that can be hit, slightly enlarged, at the last update. A scene in which nothing can be hit
 /// has lo = infinity and hi = -infinity.
 RAYLANES_STATUS raylanes_scene_d_bounds(const raylanes_scene_d* scene, double lo[3], double hi[3]);
+
+/// Writes the scene into a buffer, as raylanes_bvhd_save() does. A scene whose triangles have masks is an invalid
+/// argument.
+RAYLANES_STATUS raylanes_scene_d_save(const raylanes_scene_d* scene, void* buffer, size_t capacity,
+                                      size_t* size);
+/// Writes the scene to a file, whose name is UTF-8. If this fails, a part may be there.
+RAYLANES_STATUS raylanes_scene_d_save_file(const raylanes_scene_d* scene, const char* file);
+/// Makes the scene that was saved as these bytes, ready for queries; bytes behind it are ignored. No bytes make a scene
+/// that faults.
+RAYLANES_STATUS raylanes_scene_d_load(raylanes_scene_d** scene, const void* bytes, size_t size);
+/// Makes the scene that was saved to a file.
+RAYLANES_STATUS raylanes_scene_d_load_file(raylanes_scene_d** scene, const char* file);
 
 // Queries of rays, with the options of trees of doubles but for `masks`. `mask` is of instances, and `skip` and `after`
 // name them.

@@ -33,30 +33,36 @@ struct CallsOf;
   static constexpr auto signed_distances = of##_signed_distances;   \
   static constexpr auto winding_numbers = of##_winding_numbers;     \
   static constexpr auto stretches = of##_stretches
-// The functions that scenes of doubles lack: files.
+// Files.
 #define RAYLANES_FILE_CALLS(of)                     \
   static constexpr auto save = of##_save;           \
   static constexpr auto save_file = of##_save_file; \
   static constexpr auto load = of##_load;           \
   static constexpr auto load_file = of##_load_file
 // The functions that scenes share.
-#define RAYLANES_SCENE_CALLS(of)                                \
-  static constexpr auto create = of##_create;                   \
-  static constexpr auto copy = of##_copy;                       \
-  static constexpr auto add_mesh = of##_add_mesh;               \
-  static constexpr auto add_tree = of##_add_tree;               \
-  static constexpr auto replace_tree = of##_replace_tree;       \
-  static constexpr auto place = of##_place;                     \
-  static constexpr auto move = of##_move;                       \
-  static constexpr auto set_mask = of##_set_mask;               \
-  static constexpr auto update = of##_update;                   \
-  static constexpr auto bytes = of##_bytes;                     \
-  static constexpr auto geometry_of = of##_geometry_of;         \
-  static constexpr auto transform_of = of##_transform_of;       \
-  static constexpr auto mask_of = of##_mask_of;                 \
-  static constexpr auto normals = of##_normals;                 \
-  static constexpr auto corners = of##_corners;                 \
-  static constexpr auto innermost_parts = of##_innermost_parts; \
+#define RAYLANES_SCENE_CALLS(of)                                      \
+  static constexpr auto create = of##_create;                         \
+  static constexpr auto copy = of##_copy;                             \
+  static constexpr auto add_mesh = of##_add_mesh;                     \
+  static constexpr auto add_tree = of##_add_tree;                     \
+  static constexpr auto add_scene = of##_add_scene;                   \
+  static constexpr auto replace_tree = of##_replace_tree;             \
+  static constexpr auto refit = of##_refit;                           \
+  static constexpr auto set_triangle_masks = of##_set_triangle_masks; \
+  static constexpr auto place = of##_place;                           \
+  static constexpr auto move = of##_move;                             \
+  static constexpr auto set_mask = of##_set_mask;                     \
+  static constexpr auto set_moving = of##_set_moving;                 \
+  static constexpr auto update = of##_update;                         \
+  static constexpr auto bytes = of##_bytes;                           \
+  static constexpr auto geometry_of = of##_geometry_of;               \
+  static constexpr auto transform_of = of##_transform_of;             \
+  static constexpr auto mask_of = of##_mask_of;                       \
+  static constexpr auto levels_of = of##_levels_of;                   \
+  static constexpr auto describe = of##_describe;                     \
+  static constexpr auto normals = of##_normals;                       \
+  static constexpr auto corners = of##_corners;                       \
+  static constexpr auto innermost_parts = of##_innermost_parts;       \
   static constexpr auto containing_parts = of##_containing_parts
 // Names of functions and types; for doubles they have a d.
 #define RAYLANES_CALLS_OF(AnyNumber, TreeOfNumber, d, D)                     \
@@ -113,6 +119,7 @@ struct CallsOf<SceneD> {
   using PlaceBy = TransformD;
   using Corners = TriangleD;
   RAYLANES_SHARED_CALLS(raylanes_scene_d);
+  RAYLANES_FILE_CALLS(raylanes_scene_d);
   RAYLANES_SCENE_CALLS(raylanes_scene_d);
 };
 #undef RAYLANES_CALLS_OF

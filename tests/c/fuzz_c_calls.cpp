@@ -282,8 +282,7 @@ template <class Kind>
 void ask_tree(Bytes& bytes) {
   Caller<Kind> caller(bytes);
   const std::size_t kind = bytes.below(8);
-  if constexpr (!std::is_same_v<Kind, SceneD>)
-    if (kind == 1) return caller.save_and_load();
+  if (kind == 1) return caller.save_and_load();
   if constexpr (std::is_arithmetic_v<Kind>)
     if (kind == 0) return caller.build();
   caller.ask();

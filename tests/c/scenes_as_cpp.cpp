@@ -1,63 +1,74 @@
-// Scenes of C beside the classes: changes, normals, which part; of floats also files, reports, spheres and the caller's
+// Scenes of C beside the classes: changes, files, reports, normals, which part; of floats also spheres and the caller's
 // primitives.
 #include "as_cpp.hpp"
 
 namespace raylanes::testing {
 namespace {
 
-class CScenes : public CCalls<Scene> {
+template <class Kind>
+class CScenesOfAny : public CCalls<Kind> {
  public:
   std::string saved_by_c() const {
+    using C = CallsOf<Kind>;
     std::size_t size = 0;
-    EXPECT_EQ(raylanes_scene_save(c_tree.get(), nullptr, 0, &size), RAYLANES_SMALL_BUFFER);
+    EXPECT_EQ(C::save(this->c_tree.get(), nullptr, 0, &size), RAYLANES_SMALL_BUFFER);
     Apart<char> bytes(size);
-    EXPECT_EQ(raylanes_scene_save(c_tree.get(), bytes.data(), size, &size), RAYLANES_OK);
+    EXPECT_EQ(C::save(this->c_tree.get(), bytes.data(), size, &size), RAYLANES_OK);
     const std::vector<char> all = bytes.values();
     return std::string(all.begin(), all.end());
   }
   std::string saved() const {
     std::ostringstream file;
-    cpp_tree.save(file);
+    this->cpp_tree.save(file);
     return file.str();
   }
 };
+using Kinds = ::testing::Types<Scene, SceneD>;
+TYPED_TEST_SUITE(CScenesOfAny, Kinds);
 
-TEST_F(CScenes, are_saved_as_the_class_is) {
-  const std::string file = saved();
-  EXPECT_EQ(saved_by_c(), file);
+TYPED_TEST(CScenesOfAny, are_saved_as_the_class_is) {
+  using C = CallsOf<TypeParam>;
+  const std::string file = this->saved();
+  EXPECT_EQ(this->saved_by_c(), file);
   Apart<char> bytes(std::vector<char>(file.begin(), file.end()), 0);
   const auto loaded =
-      made<TreeOfC<Scene>>([&](auto** scene) { raylanes_scene_load(scene, bytes.data(), file.size()); });
+      made<TreeOfC<TypeParam>>([&](auto** scene) { C::load(scene, bytes.data(), file.size()); });
   ASSERT_NE(loaded, nullptr);
-  std::vector<SceneHit> hits(count), expected(count);
-  cpp_tree.closest(rays, expected);
-  raylanes_scene_closest(loaded.get(), rays.data(), count, 0, hits.data(), 0, nullptr);
+  std::vector<HitOfKind<TypeParam>> hits(count), expected(count);
+  this->cpp_tree.closest(this->rays, expected);
+  C::closest(loaded.get(), this->rays.data(), count, 0, hits.data(), 0, nullptr);
   EXPECT_TRUE(same_bytes(hits, expected));
 }
 
-TEST_F(CScenes, follow_changes_of_the_class) {
-  Mesh moved = ball;
-  for (Float3& vertex : moved.vertices) std::swap(vertex[0], vertex[2]);
-  cpp_tree.refit(1, moved.vertices, moved.triangles, 2), cpp_tree.move(5, {}), cpp_tree.set_moving(1);
-  cpp_tree.set_mask(2, 7), cpp_tree.replace(0, Bvh(moved)), cpp_tree.update();
-  Apart<Float3> vertices(moved.vertices, 3);
-  const auto tree = c_tree_of<float>(moved);
-  raylanes_scene* const scene = c_tree.get();
-  EXPECT_EQ(raylanes_scene_refit(scene, 1, vertices.data(), moved.vertices.size(), vertices.stride(),
-                                 moved.triangles.data(), moved.triangles.size(), 0, 2),
+TYPED_TEST(CScenesOfAny, follow_changes_of_the_class) {
+  using C = CallsOf<TypeParam>;
+  using Number = typename C::Number;
+  auto moved = this->ball;
+  for (auto& vertex : moved.vertices) std::swap(vertex[0], vertex[2]);
+  auto& of_cpp = this->cpp_tree;
+  of_cpp.refit(1, moved.vertices, moved.triangles, 2), of_cpp.move(5, {}), of_cpp.set_moving(1);
+  of_cpp.set_mask(2, 7), of_cpp.replace(0, typename CallsOf<Number>::Tree(moved.vertices, moved.triangles));
+  of_cpp.update();
+  Apart<PointOf<Number>> vertices(moved.vertices, 3);
+  const auto tree = c_tree_of<Number>(moved);
+  auto* const scene = this->c_tree.get();
+  EXPECT_EQ(C::refit(scene, 1, vertices.data(), moved.vertices.size(), vertices.stride(),
+                     moved.triangles.data(), moved.triangles.size(), 0, 2),
             RAYLANES_OK);
-  EXPECT_EQ(raylanes_scene_move(scene, 5, nullptr), RAYLANES_OK);
-  EXPECT_EQ(raylanes_scene_set_moving(scene, 1, 3), RAYLANES_OK);
-  EXPECT_EQ(raylanes_scene_set_mask(scene, 2, 7), RAYLANES_OK);
-  EXPECT_EQ(raylanes_scene_replace_tree(scene, 0, tree.get()), RAYLANES_OK);
-  EXPECT_EQ(raylanes_scene_update(scene, 1), RAYLANES_OK);
-  EXPECT_EQ(saved_by_c(), saved());
-  const SceneReport expected = cpp_tree.report();
+  EXPECT_EQ(C::move(scene, 5, nullptr), RAYLANES_OK);
+  EXPECT_EQ(C::set_moving(scene, 1, 3), RAYLANES_OK);
+  EXPECT_EQ(C::set_mask(scene, 2, 7), RAYLANES_OK);
+  EXPECT_EQ(C::replace_tree(scene, 0, tree.get()), RAYLANES_OK);
+  EXPECT_EQ(C::update(scene, 1), RAYLANES_OK);
+  EXPECT_EQ(this->saved_by_c(), this->saved());
+  const SceneReport expected = of_cpp.report();
   raylanes_scene_report report;
-  EXPECT_EQ(raylanes_scene_describe(scene, &report, sizeof report), RAYLANES_OK);
+  EXPECT_EQ(C::describe(scene, &report, sizeof report), RAYLANES_OK);
   EXPECT_EQ(std::memcmp(&report, &expected, sizeof report), 0);
-  EXPECT_EQ(raylanes_scene_bytes(scene), cpp_tree.bytes());
+  EXPECT_EQ(C::bytes(scene), of_cpp.bytes());
 }
+
+class CScenes : public CCalls<Scene> {};
 
 // A square in the middle of a box, to see through from one side.
 bool hits_square(std::uint32_t primitive, const Ray& ray, Hit& hit) {
@@ -127,11 +138,6 @@ TEST_F(CScenes, have_the_spheres_and_primitives_of_the_class) {
   });
   EXPECT_TRUE(found[2] > count && found[3] > count);
 }
-
-template <class Kind>
-class CScenesOfAny : public CCalls<Kind> {};
-using Kinds = ::testing::Types<Scene, SceneD>;
-TYPED_TEST_SUITE(CScenesOfAny, Kinds);
 
 TYPED_TEST(CScenesOfAny, change_as_the_classes_do) {
   using C = CallsOf<TypeParam>;

@@ -134,6 +134,7 @@ void run_out_in_scenes(const AnyMesh& mesh, const std::vector<AnyRay>& rays) {
       if constexpr (std::is_same_v<Kind, Scene>)
         call(raylanes_scene_add_primitives(whole.get(), rays.data(), 5, 0, never_hit, nullptr, nullptr,
                                            &part));
+      call(C::add_scene(whole.get(), whole.get(), &part));
       const std::uint32_t parts = part + 1;
       for (std::uint32_t i = 0; i < parts; ++i) call(C::place(whole.get(), i, nullptr, 1, &part));
       call(C::update(whole.get(), 1));

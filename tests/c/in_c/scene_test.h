@@ -1,5 +1,6 @@
 // The functions that scenes of floats and of doubles share, for the file that includes this and names the kind.
 #include "tetrahedron.h"
+#include "tree_files.h"
 #include "tree_points.h"
 #include "tree_queries.h"
 #include "tree_refused.h"
@@ -153,12 +154,93 @@ static void test_parts(void) {
   CALL(destroy)(scene);
 }
 
+static void test_changes(void) {
+  TREE* const scene = scene_of_tetrahedron();
+  raylanes_scene_report report;
+  NUMBER raised[12];
+  uint32_t instance;
+  write_raised(raised);
+  GOOD(CALL(place)(scene, 0, up_by_4, 6, &instance));
+  GOOD(CALL(refit)(scene, 0, raised, 4, 0, faces, 4, 0, 1));
+  GOOD(CALL(update)(scene, 1));
+  expect_hit(scene, NULL, 3.5, 0, 1);
+  GOOD(CALL(set_mask)(scene, 1, 0));
+  GOOD(CALL(update)(scene, 1));
+  expect_hit(scene, NULL, 7.5, 0, 0);
+  GOOD(CALL(set_mask)(scene, 1, 6));
+  GOOD(CALL(move)(scene, 1, NULL));
+  GOOD(CALL(set_moving)(scene, 1, 1));
+  GOOD(CALL(update)(scene, 1));
+  expect_hit(scene, NULL, 7.5, 0, 0);
+  memset(&report, 0x5a, sizeof report);
+  GOOD(CALL(describe)(scene, &report, sizeof report - 8));
+  EXPECT(report.mesh_triangles == 4 && report.meshes_without_tree == (size_t)0x5a5a5a5a5a5a5a5a);
+  CALL(destroy)(scene);
+}
+
+static void test_triangle_masks(void) {
+  static const uint32_t masks[4] = {2, 2, 6, 2};
+  TREE* scene = scene_of_tetrahedron();
+  raylanes_ray_options options = ray_options();
+  size_t size;
+  GOOD(CALL(set_triangle_masks)(scene, 0, masks, 4));
+  GOOD(CALL(update)(scene, 1));
+  expect_hit(scene, NULL, 8.5, 0, 0);
+  options.mask = 1;
+  expect_hit(scene, &options, INFINITY, RAYLANES_NO_PART, RAYLANES_NO_PART);
+  GOOD(CALL(set_triangle_masks)(scene, 0, NULL, 0));
+  GOOD(CALL(update)(scene, 1));
+  expect_hit(scene, &options, 8.5, 0, 0);
+  REFUSED(CALL(set_triangle_masks)(scene, 1, masks, 4), "there is no geometry 1");
+  REFUSED(CALL(set_triangle_masks)(scene, 0, NULL, 4), "masks: ");
+  REFUSED(CALL(set_triangle_masks)(NULL, 0, masks, 4), "scene: ");
+  GOOD(CALL(set_triangle_masks)(scene, 0, masks, 1));
+  REFUSED(CALL(save)(scene, NULL, 0, &size), "masks of triangles");
+  CALL(destroy)(scene);
+}
+
+// The tetrahedron twice in a scene, which is placed by two more.
+static void test_scenes_within(void) {
+  TREE *part = scene_of_tetrahedron(), *whole = NULL;
+  raylanes_instance_level levels[3] = {{7, 7}, {7, 7}, {7, 7}};
+  uint32_t geometry, instance, mask;
+  size_t count = 0;
+  GOOD(CALL(place)(part, 0, up_by_4, 6, &instance));
+  GOOD(CALL(create)(&whole));
+  GOOD(CALL(add_scene)(whole, part, &geometry));
+  CALL(destroy)(part);
+  GOOD(CALL(place)(whole, geometry, up_by_4, 3, &instance));
+  EXPECT(geometry == 0 && instance == 0);
+  GOOD(CALL(update)(whole, 1));
+  expect_hit(whole, NULL, 0.5, 1, 2);
+  GOOD(CALL(mask_of)(whole, 2, &mask));
+  EXPECT(mask == 2);
+  GOOD(CALL(add_scene)(whole, whole, &geometry));
+  GOOD(CALL(place)(whole, geometry, NULL, every_bit, &instance));
+  EXPECT(geometry == 2 && instance == 3 && CALL(instance_count)(whole) == 7);
+  EXPECT(CALL(levels_of)(whole, 6, levels, 2, &count) == RAYLANES_SMALL_BUFFER && count == 3);
+  EXPECT(levels[0].instance == 7);
+  GOOD(CALL(levels_of)(whole, 6, levels, 3, &count));
+  EXPECT(levels[0].instance == 3 && levels[0].geometry == 2 && levels[1].instance == 0 &&
+         levels[1].geometry == 0 && levels[2].instance == 1 && levels[2].geometry == 0);
+  REFUSED(CALL(levels_of)(whole, 7, levels, 3, &count), "there is no instance 7");
+  REFUSED(CALL(levels_of)(whole, 6, levels, 3, NULL), "count: ");
+  REFUSED(CALL(levels_of)(NULL, 6, levels, 3, &count), "scene: ");
+  REFUSED(CALL(levels_of)(whole, 6, NULL, 3, &count), "levels: ");
+  REFUSED(CALL(move)(whole, 6, NULL), "instance 3");
+  REFUSED(CALL(set_mask)(whole, 2, 1), "instance 0");
+  REFUSED(CALL(add_scene)(whole, NULL, &geometry), "is NULL");
+  REFUSED(CALL(add_scene)(NULL, whole, &geometry), "scene: ");
+  CALL(destroy)(whole);
+}
+
 static void test_refused_places(TREE* scene) {
   const NUMBER broken[9] = {0, 0, 0, 1, 0, 0, 0, NAN, 0};
   raylanes_ray_options masked = ray_options();
   TREE* other = scene;
   PART_TREE* tree = NULL;
   raylanes_lists* lists = NULL;
+  raylanes_scene_report report;
   RECORD(hit) hit;
   uint32_t got = 7;
   NUMBER numbers[12];
@@ -195,6 +277,13 @@ static void test_refused_places(TREE* scene) {
   REFUSED(CALL(normals)(scene, NULL, 1, 0, numbers, 1), "hits");
   REFUSED(CALL(normals)(scene, corners, 1, 23, numbers, 1), "hits");
   REFUSED(CALL(normals)(scene, corners, 1, 0, NULL, 1), "normals");
+  REFUSED(CALL(refit)(scene, 1, corners, 4, 0, faces, 4, 0, 1), "geometry 1");
+  REFUSED(CALL(refit)(scene, 0, corners, 4, 0, faces, 3, 0, 1), "triangles");
+  REFUSED(CALL(refit)(NULL, 0, corners, 4, 0, faces, 4, 0, 1), "scene");
+  REFUSED(CALL(set_moving)(scene, 1, 1), "instance 1");
+  REFUSED(CALL(describe)(NULL, &report, sizeof report), "scene");
+  REFUSED(CALL(describe)(scene, NULL, sizeof report), "report");
+  REFUSED(CALL(describe)(scene, &report, sizeof report + 8), "size");
   masked.masks = &every_bit, masked.mask_count = 1;
   REFUSED(CALL(closest)(scene, rays, 1, 0, &hit, 0, &masked), "masks");
   REFUSED(CALL(closest1)(scene, rays, &hit, &masked), "masks");
@@ -218,7 +307,11 @@ static void test_scene(TREE* scene) {
   test_progress_of_points(scene);
   test_refused_points(scene);
   test_refused_places(scene);
+  test_files(scene);
   test_places();
+  test_changes();
+  test_triangle_masks();
+  test_scenes_within();
   test_surfaces();
   test_parts();
 }

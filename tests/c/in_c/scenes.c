@@ -14,7 +14,6 @@
 #define ANOTHER_LOAD raylanes_bvh_load
 #define ANOTHER_TREE raylanes_bvh
 #include "scene_test.h"
-#include "tree_files.h"
 #include "tree_stretches.h"
 
 // A progress that is given with a mesh is not called, not even where the tree is built.
@@ -29,87 +28,10 @@ static void test_meshes(void) {
   GOOD(raylanes_scene_add_mesh(scene, corners, 4, 0, faces, 4, 0, &options, &part));
   GOOD(raylanes_scene_place(scene, part, up_by_4, every_bit, &part));
   GOOD(raylanes_scene_update(scene, 1));
+  expect_hit(scene, NULL, 4.5f, 0, 0);
+  GOOD(raylanes_scene_set_mask(scene, part, 0));  // at once
+  expect_hit(scene, NULL, INFINITY, RAYLANES_NO_PART, RAYLANES_NO_PART);
   raylanes_scene_destroy(scene);
-}
-
-static void test_changes(void) {
-  raylanes_scene* const scene = scene_of_tetrahedron();
-  raylanes_scene_report report;
-  float raised[12];
-  uint32_t instance;
-  write_raised(raised);
-  GOOD(raylanes_scene_place(scene, 0, up_by_4, 6, &instance));
-  GOOD(raylanes_scene_refit(scene, 0, raised, 4, 0, faces, 4, 0, 1));
-  GOOD(raylanes_scene_update(scene, 1));
-  expect_hit(scene, NULL, 3.5f, 0, 1);
-  GOOD(raylanes_scene_set_mask(scene, 1, 0));  // at once
-  expect_hit(scene, NULL, 7.5f, 0, 0);
-  GOOD(raylanes_scene_set_mask(scene, 1, 6));
-  GOOD(raylanes_scene_move(scene, 1, NULL));
-  GOOD(raylanes_scene_set_moving(scene, 1, 1));
-  GOOD(raylanes_scene_update(scene, 1));
-  expect_hit(scene, NULL, 7.5f, 0, 0);
-  memset(&report, 0x5a, sizeof report);
-  GOOD(raylanes_scene_describe(scene, &report, sizeof report - 8));
-  EXPECT(report.mesh_triangles == 4 && report.meshes_without_tree == (size_t)0x5a5a5a5a5a5a5a5a);
-  raylanes_scene_destroy(scene);
-}
-
-static void test_triangle_masks(void) {
-  static const uint32_t masks[4] = {2, 2, 6, 2};
-  raylanes_scene* scene = scene_of_tetrahedron();
-  raylanes_ray_options options = ray_options();
-  uint32_t part, instance;
-  GOOD(raylanes_scene_set_triangle_masks(scene, 0, masks, 4));
-  GOOD(raylanes_scene_update(scene, 1));
-  expect_hit(scene, NULL, 8.5f, 0, 0);
-  options.mask = 1;
-  expect_hit(scene, &options, INFINITY, RAYLANES_NO_PART, RAYLANES_NO_PART);
-  GOOD(raylanes_scene_set_triangle_masks(scene, 0, NULL, 0));
-  GOOD(raylanes_scene_update(scene, 1));
-  expect_hit(scene, &options, 8.5f, 0, 0);
-  REFUSED(raylanes_scene_set_triangle_masks(scene, 1, masks, 4), "there is no geometry 1");
-  REFUSED(raylanes_scene_set_triangle_masks(scene, 0, NULL, 4), "masks: ");
-  REFUSED(raylanes_scene_set_triangle_masks(NULL, 0, masks, 4), "scene: ");
-  GOOD(raylanes_scene_add_spheres(scene, corners, 0, 0, NULL, &part));
-  GOOD(raylanes_scene_place(scene, part, NULL, 1, &instance));
-  REFUSED(raylanes_scene_set_triangle_masks(scene, part, masks, 4), "no triangles");
-  raylanes_scene_destroy(scene);
-}
-
-// The tetrahedron twice in a scene, which is placed by two more.
-static void test_scenes_within(void) {
-  raylanes_scene *part = scene_of_tetrahedron(), *whole = NULL;
-  raylanes_instance_level levels[3] = {{7, 7}, {7, 7}, {7, 7}};
-  uint32_t geometry, instance, mask;
-  size_t count = 0;
-  GOOD(raylanes_scene_place(part, 0, up_by_4, 6, &instance));
-  GOOD(raylanes_scene_create(&whole));
-  GOOD(raylanes_scene_add_scene(whole, part, &geometry));
-  raylanes_scene_destroy(part);
-  GOOD(raylanes_scene_place(whole, geometry, up_by_4, 3, &instance));
-  EXPECT(geometry == 0 && instance == 0);
-  GOOD(raylanes_scene_update(whole, 1));
-  expect_hit(whole, NULL, 0.5f, 1, 2);
-  GOOD(raylanes_scene_mask_of(whole, 2, &mask));
-  EXPECT(mask == 2);
-  GOOD(raylanes_scene_add_scene(whole, whole, &geometry));
-  GOOD(raylanes_scene_place(whole, geometry, NULL, every_bit, &instance));
-  EXPECT(geometry == 2 && instance == 3 && raylanes_scene_instance_count(whole) == 7);
-  EXPECT(raylanes_scene_levels_of(whole, 6, levels, 2, &count) == RAYLANES_SMALL_BUFFER && count == 3);
-  EXPECT(levels[0].instance == 7);
-  GOOD(raylanes_scene_levels_of(whole, 6, levels, 3, &count));
-  EXPECT(levels[0].instance == 3 && levels[0].geometry == 2 && levels[1].instance == 0 &&
-         levels[1].geometry == 0 && levels[2].instance == 1 && levels[2].geometry == 0);
-  REFUSED(raylanes_scene_levels_of(whole, 7, levels, 3, &count), "there is no instance 7");
-  REFUSED(raylanes_scene_levels_of(whole, 6, levels, 3, NULL), "count: ");
-  REFUSED(raylanes_scene_levels_of(NULL, 6, levels, 3, &count), "scene: ");
-  REFUSED(raylanes_scene_levels_of(whole, 6, NULL, 3, &count), "levels: ");
-  REFUSED(raylanes_scene_move(whole, 6, NULL), "instance 3");
-  REFUSED(raylanes_scene_set_mask(whole, 2, 1), "instance 0");
-  REFUSED(raylanes_scene_add_scene(whole, NULL, &geometry), "is NULL");
-  REFUSED(raylanes_scene_add_scene(NULL, whole, &geometry), "scene: ");
-  raylanes_scene_destroy(whole);
 }
 
 static int32_t hit_roof(void* context, uint32_t primitive, const raylanes_ray* ray, raylanes_hit* hit) {
@@ -157,13 +79,13 @@ static void test_other_primitives(void) {
   GOOD(raylanes_scene_replace_spheres(copy, 1, spheres, 1, 0, NULL));
   GOOD(raylanes_scene_update(copy, 1));
   expect_hit(copy, &trace, 1, 1, 1);
+  REFUSED(raylanes_scene_set_triangle_masks(copy, 1, &every_bit, 1), "no triangles");
   raylanes_scene_destroy(copy);
 }
 
 static void test_refused_kinds(raylanes_scene* scene) {
   const raylanes_sphere sphere = {{0, 0, 0}, 1};
   raylanes_build_options options;
-  raylanes_scene_report report;
   uint32_t got = 7;
   GOOD(raylanes_init_build_options(&options, sizeof options));
   REFUSED(raylanes_scene_add_spheres(NULL, &sphere, 1, 0, NULL, &got), "scene");
@@ -179,13 +101,6 @@ static void test_refused_kinds(raylanes_scene* scene) {
   options.slack = 0, options.builder = 6;
   REFUSED(raylanes_scene_add_spheres(scene, &sphere, 1, 0, &options, &got), "builder");
   REFUSED(raylanes_scene_replace_spheres(scene, 1, &sphere, 1, 0, NULL), "geometry 1");
-  REFUSED(raylanes_scene_refit(scene, 1, corners, 4, 0, faces, 4, 0, 1), "geometry 1");
-  REFUSED(raylanes_scene_refit(scene, 0, corners, 4, 0, faces, 3, 0, 1), "triangles");
-  REFUSED(raylanes_scene_refit(NULL, 0, corners, 4, 0, faces, 4, 0, 1), "scene");
-  REFUSED(raylanes_scene_set_moving(scene, 1, 1), "instance 1");
-  REFUSED(raylanes_scene_describe(NULL, &report, sizeof report), "scene");
-  REFUSED(raylanes_scene_describe(scene, NULL, sizeof report), "report");
-  REFUSED(raylanes_scene_describe(scene, &report, sizeof report + 8), "size");
   EXPECT(got == 7 && raylanes_scene_geometry_count(scene) == 1);
   expect_tetrahedron(scene);  // without another update
 }
@@ -194,12 +109,8 @@ void test_scenes(void) {
   raylanes_scene* const scene = scene_of_tetrahedron();
   test_scene(scene);
   test_stretches(scene);
-  test_files(scene);
   test_refused_kinds(scene);
   raylanes_scene_destroy(scene);
   test_meshes();
-  test_changes();
-  test_scenes_within();
-  test_triangle_masks();
   test_other_primitives();
 }

@@ -11,6 +11,8 @@
 #define KIND "scene"
 #define PART_TREE raylanes_bvhd
 #define PART(name) raylanes_bvhd_##name
+#define ANOTHER_LOAD raylanes_scene_load
+#define ANOTHER_TREE raylanes_scene
 #include "scene_test.h"
 #include "tree_stretches.h"
 
