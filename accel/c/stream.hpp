@@ -1,56 +1,22 @@
-// Streams over the caller's memory and files, for trees that are saved and loaded.
+// Trees and scenes to the caller's memory and files, and back.
 #pragma once
 
-#include <streambuf>
-#include <system_error>
+#include <iosfwd>
 
 #include "../standard.hpp"
 
 namespace raylanes::c {
 
-// Keeps what fits into a buffer, and counts all that is written.
-class BufferOutput : public std::streambuf {
- public:
-  BufferOutput(void* buffer, std::size_t capacity)
-      : buffer_(static_cast<char*>(buffer)), capacity_(capacity) {}
-  std::size_t size() const { return size_; }
+// How an object is saved, and how it becomes the one that was.
+using Save = void (*)(const void* object, std::ostream& file);
+using Load = void (*)(void* object, std::istream& file);
 
- protected:
-  std::streamsize xsputn(const char* bytes, std::streamsize count) override;
-  int_type overflow(int_type byte) override;
-
- private:
-  char* buffer_;
-  std::size_t capacity_, size_ = 0;
-};
-
-// Reads bytes, and knows where they end.
-class BufferInput : public std::streambuf {
- public:
-  BufferInput(const void* bytes, std::size_t size);
-
- protected:
-  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode mode) override;
-  pos_type seekpos(pos_type position, std::ios_base::openmode mode) override;
-};
-
-// Opens a file, whose name is UTF-8 on every system. Throws std::runtime_error that names the file and the cause.
-template <class Stream>
-Stream opened(const char* name);
-// Throws std::runtime_error: what is wrong with a file.
-[[noreturn]] void refuse_named(const char* name, const char* cause);
-
-// Returns use(stream) of a file. Its std::runtime_error gets the name of the file.
-template <class Stream, class Use>
-auto with_file(const char* name, const Use& use) {
-  Stream stream = opened<Stream>(name);
-  try {
-    return use(stream);
-  } catch (const std::system_error&) {  // also a std::runtime_error
-    throw;
-  } catch (const std::runtime_error& error) {
-    refuse_named(name, error.what());
-  }
-}
+// Sets *size to how many bytes the object has. Throws SmallBuffer if there is less room; the buffer has the first ones
+// then.
+void save_to_buffer(const void* object, Save save, void* buffer, std::size_t capacity, std::size_t* size);
+void load_from_buffer(void* object, Load load, const void* bytes, std::size_t size);
+// A file, whose name is UTF-8 on every system. Throw std::runtime_error that names the file and the cause.
+void save_to_file(const void* object, Save save, const char* file);
+void load_from_file(void* object, Load load, const char* file);
 
 }  // namespace raylanes::c
