@@ -3,7 +3,7 @@
 #include <map>
 #include <sstream>
 
-#include <raylanes/scene_d.hpp>
+#include <raylanes/stretches.hpp>
 
 #include "../../../accel/scene/doubles/instance_d.hpp"
 #include "../../fuzz/any_doubles.hpp"
@@ -30,20 +30,30 @@ TransformD any_transform_d(Bytes& bytes, DoubleCoordinates& coordinates) {
 // The masks of the triangles of geometries.
 using MasksOfParts = std::map<std::uint32_t, std::vector<std::uint32_t>>;
 
-// All hits of a ray, in order, by the tree of each instance.
-std::vector<SceneHitD> hits_of(const SceneD& scene, const MasksOfParts& masks, const RayD& ray,
-                               std::uint32_t mask, Facing facing) {
-  std::vector<SceneHitD> all;
+// visit(instance, tree, ray, options) for each instance that may be hit, with the ray in its space.
+template <class Visit>
+void each_instance(const SceneD& scene, const MasksOfParts& masks, const RayD& ray, std::uint32_t mask,
+                   const Visit& visit) {
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const InstanceD instance(scene.geometry_of(i), scene.transform_of(i), scene.mask_of(i));
     const BvhD& tree = scene.tree(instance.geometry);
     if ((instance.mask & mask) == 0 || !(bounds_of(instance, tree.bounds()).box.lo[0] < HUGE_VAL)) continue;
-    ListOptions options{.facing = facing, .mask = mask};
+    ListOptions options{.mask = mask};
     if (const auto found = masks.find(instance.geometry); found != masks.end()) options.masks = found->second;
-    const auto lists = tree.all_hits(std::vector{in_part(instance, ray)}, options);
-    for (const HitD& hit : lists.items)
-      all.push_back({hit.t, hit.u, hit.v, hit.primitive, instance.geometry, i});
+    visit(i, tree, std::vector{in_part(instance, ray)}, options);
   }
+}
+
+// All hits of a ray, in order, by the tree of each instance.
+std::vector<SceneHitD> hits_of(const SceneD& scene, const MasksOfParts& masks, const RayD& ray,
+                               std::uint32_t mask, Facing facing) {
+  std::vector<SceneHitD> all;
+  each_instance(scene, masks, ray, mask, [&](auto i, const BvhD& tree, const auto& mapped, auto options) {
+    options.facing = facing;
+    const auto lists = tree.all_hits(mapped, options);
+    for (const HitD& hit : lists.items)
+      all.push_back({hit.t, hit.u, hit.v, hit.primitive, scene.geometry_of(i), i});
+  });
   std::ranges::sort(all, {},
                     [](const SceneHitD& hit) { return std::tuple(hit.t, hit.instance, hit.primitive); });
   return all;
@@ -75,6 +85,17 @@ void expect_hits(const SceneD& scene, const MasksOfParts& masks, const std::vect
   }
   std::vector<SceneHitD> crossings(rays.size());
   scene.closest_crossing(rays, crossings, options);
+  const auto within = stretches(scene, rays, {.path = options.path, .mask = options.mask});
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    std::vector<SceneStretchD> all;
+    each_instance(scene, masks, rays[i], options.mask,
+                  [&](auto number, const BvhD& tree, const auto& mapped, const auto& seen) {
+                    for (const StretchD& stretch : stretches(tree, mapped, seen).items)
+                      all.push_back({stretch, scene.geometry_of(number), number});
+                  });
+    std::ranges::stable_sort(all, {}, &SceneStretchD::entry);
+    if (!std::ranges::equal(within[i], all)) fail("ray " + std::to_string(i) + ": other stretches");
+  }
 }
 
 void expect_points(const SceneD& scene, const std::vector<RayD>& rays, const TraceOptionsD& options) {
