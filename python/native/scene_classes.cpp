@@ -1,85 +1,17 @@
 #include <pybind11/stl.h>
 
-#include <raylanes/stretches.hpp>
-
 #include "module.hpp"
 #include "scene_states.hpp"
 
 namespace raylanes::python {
 namespace {
 
-template <class S>
-using NumberIn = typename SharedScene<S>::Number;
-template <class S>
-using HitIn = typename raylanes::detail::QueryTypes<S>::Hit;
-
-template <class S>
-void closest_in_scene(const SharedScene<S>& shared, const py::object& rays, const py::array& hits,
-                      const py::tuple& how, const py::object& active, std::uint32_t mask,
-                      const py::object& after, const py::object& filter) {
-  const RaysOf<NumberIn<S>> from(rays);
-  const auto to = writable_records_of<HitIn<S>>(hits);
-  auto options = trace_options<NumberIn<S>>(how, active, from.count);
-  options.mask = mask;
-  options.after = hits_after<HitIn<S>>(after);
-  filtered_query<HitIn<S>>(shared, options, how[how_progress], from.count, filter,
-                           [&](const S& scene, const auto& heard, const auto&... filters) {
-                             scene.closest(from, to, filters..., heard);
-                           });
-}
-
-template <class S>
-void crossing_in_scene(const SharedScene<S>& shared, const py::object& rays, const py::array& hits,
-                       const py::tuple& how, const py::object& active, std::uint32_t mask,
-                       const py::object& after) {
-  const RaysOf<NumberIn<S>> from(rays);
-  const auto to = writable_records_of<HitIn<S>>(hits);
-  auto options = trace_options<NumberIn<S>>(how, active, from.count);
-  options.mask = mask;
-  options.after = hits_after<HitIn<S>>(after);
-  query(shared, options, how[how_progress], from.count,
-        [&](const S& scene, const auto& heard) { scene.closest_crossing(from, to, heard); });
-}
-
-template <class S>
-void occluded_in_scene(const SharedScene<S>& shared, const py::object& rays, const py::array& occluded,
-                       const py::tuple& how, const py::object& active, std::uint32_t mask,
-                       const py::object& filter) {
-  const RaysOf<NumberIn<S>> from(rays);
-  const auto to = span_of<std::uint8_t>(occluded);
-  auto options = trace_options<NumberIn<S>>(how, active, from.count);
-  options.mask = mask;
-  filtered_query<HitIn<S>>(shared, options, how[how_progress], from.count, filter,
-                           [&](const S& scene, const auto& heard, const auto&... filters) {
-                             scene.occluded(from, to, filters..., heard);
-                           });
-}
-
-template <class S>
-void shadows_in_scene(const SharedScene<S>& shared, const std::array<NumberIn<S>, 3>& from,
-                      const py::array& points, const py::array& occluded, const Ends<NumberIn<S>>& ends,
-                      const py::tuple& how, const py::object& active, std::uint32_t mask,
-                      const py::object& filter) {
-  const auto to_points = vertices_of<NumberIn<S>>(points);
-  const auto to = span_of<std::uint8_t>(occluded);
-  auto options = trace_options<NumberIn<S>>(how, active, to_points.count);
-  options.mask = mask;
-  filtered_query<HitIn<S>>(
-      shared, options, how[how_progress], to_points.count, filter,
-      [&](const S& scene, const auto& heard, const auto&... filters) {
-        if (ends)
-          scene.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
-        else
-          scene.occluded_towards(from, to_points, to, filters..., heard);
-      });
-}
-
 // The innermost part of each point.
 template <class S>
 void innermost_parts(const SharedScene<S>& shared, const py::array& points, const py::array& parts,
                      const char* rule, const char* path, int threads, const py::object& active,
                      const py::object& progress, std::uint32_t mask) {
-  const auto from = vertices_of<NumberIn<S>>(points);
+  const auto from = vertices_of<NumberIn<SharedScene<S>>>(points);
   const auto to = span_of<ContainingPart>(parts);
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule), options.mask = mask;
@@ -91,7 +23,7 @@ template <class S>
 py::tuple containing_parts(const SharedScene<S>& shared, const py::array& points, const char* rule,
                            const char* path, int threads, const py::object& active,
                            const py::object& progress, std::uint32_t mask) {
-  const auto from = vertices_of<NumberIn<S>>(points);
+  const auto from = vertices_of<NumberIn<SharedScene<S>>>(points);
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule), options.mask = mask;
   auto found = query(
@@ -105,7 +37,7 @@ template <class S>
 void corners_in_scene(const SharedScene<S>& shared, const py::array& hits, const py::array& corners) {
   const PrimitiveView names = skips_of(hits);
   using TriangleNumbers = std::conditional_t<has_floats<S>, Triangle, TriangleD>;
-  const std::span triangles(reinterpret_cast<TriangleNumbers*>(span_of<NumberIn<S>>(corners).data()),
+  const std::span triangles(reinterpret_cast<TriangleNumbers*>(span_of<NumberIn<SharedScene<S>>>(corners).data()),
                             names.count);
   query(shared, [&](const S& scene) { scene.corners(names, triangles); });
 }
@@ -113,8 +45,8 @@ template <class S>
 void normals_in_scene(const SharedScene<S>& shared, const py::array& hits, const py::array& normals,
                       int threads) {
   const PrimitiveView names = skips_of(hits);
-  using Normal = std::array<NumberIn<S>, 3>;
-  const std::span to(reinterpret_cast<Normal*>(span_of<NumberIn<S>>(normals).data()), names.count);
+  using Normal = std::array<NumberIn<SharedScene<S>>, 3>;
+  const std::span to(reinterpret_cast<Normal*>(span_of<NumberIn<SharedScene<S>>>(normals).data()), names.count);
   threads = usable_threads(threads);
   query(shared, [&](const S& scene) { scene.normals(names, to, threads); });
 }
@@ -139,13 +71,6 @@ void instances_of(const SharedScene<S>& shared, const py::array& numbers, const 
   }
 }
 
-std::vector<InstanceLevel> levels_in(const Scene& scene, std::uint32_t instance) {
-  return scene.levels_of(instance);
-}
-std::vector<InstanceLevel> levels_in(const SceneD& scene, std::uint32_t instance) {
-  return {{instance, scene.geometry_of(instance)}};
-}
-
 // Rows of as many levels as the deepest instance has, of an instance and a geometry each, as bytes; and how many levels
 // these are. No instance has no_part in all of them.
 template <class S>
@@ -156,7 +81,7 @@ py::tuple levels_of(const SharedScene<S>& shared, const py::array& numbers) {
   std::size_t deepest = 1;
   for (std::size_t i = 0; i < of_numbers.count; ++i) {
     const std::uint32_t number = of_numbers[i];
-    ways.push_back(number != no_part ? levels_in(scene, number) : std::vector<InstanceLevel>());
+    ways.push_back(number != no_part ? scene.levels_of(number) : std::vector<InstanceLevel>());
     deepest = std::max(deepest, ways.back().size());
   }
   std::vector<InstanceLevel> rows(ways.size() * deepest);
@@ -169,7 +94,8 @@ py::tuple corners_of(const AnyBox& box) {
   return py::make_tuple(box.lo, box.hi);
 }
 
-py::dict report_of_scene(const SharedScene<Scene>& shared) {
+template <class S>
+py::dict report_of_scene(const SharedScene<S>& shared) {
   const SceneReport report = shared.state->report();
   py::dict all;
   all["common_trees"] = to_python(report.common_trees);
@@ -207,39 +133,29 @@ void bind_spheres(py::module_& module) {
       .def("__reduce_ex__", reduced_spheres);
 }
 
-// What scenes of floats and of doubles have.
 template <class S>
 auto bind_scene(py::module_& module, const char* name) {
   using Shared = SharedScene<S>;
   using Mask = std::uint32_t;
-  using Types = raylanes::detail::QueryTypes<S>;
-  using Rays = RayRecords<RayOf<NumberIn<S>>>;
-  constexpr RayLists<HitIn<S>> (SurfaceQueries<S>::*hits)(Rays, const ListOptions&) const = &S::all_hits;
-  constexpr RayLists<typename Types::Crossing> (SurfaceQueries<S>::*crossings_of_rays)(
-      Rays, const ListOptions&) const = &S::crossings;
-  using Stretches = std::conditional_t<has_floats<S>, SceneStretch, SceneStretchD>;
-  constexpr RayLists<Stretches> (*within)(const S&, Rays, const ListOptions&) = &stretches;
   auto scene = bind_shared<Shared>(module, name);
   def_constructor(scene, empty_scene<S>);
+  def_constructor(scene, made_from<Shared>);
+  def_ray_calls<S>(scene);
   scene.def("add", add<S>)
+      .def("add_scene", add_scene<S>)
       .def("replace", replace<S>)
       .def("refit", refit_geometry<S>)
       .def("place", place<S>)
       .def("move", move<S>)
       .def("set_mask", set_mask<S>)
+      .def("set_moving", set_moving<S>)
+      .def("set_triangle_masks", set_triangle_masks<S>)
       .def("update", update<S>)
+      .def("report", report_of_scene<S>)
       .def("instances", instances_of<S>)
       .def("levels_of", levels_of<S>)
       .def("geometry_count", [](const Shared& shared) { return to_python(shared.state->geometry_count()); })
       .def("instance_count", [](const Shared& shared) { return to_python(shared.state->instance_count()); })
-      .def("closest", closest_in_scene<S>)
-      .def("closest_crossing", crossing_in_scene<S>)
-      .def("occluded", occluded_in_scene<S>)
-      .def("occluded_from", shadows_in_scene<S>)
-      .def("all_hits", lists<Shared, hits, Mask>)
-      .def("crossings", lists<Shared, crossings_of_rays, Mask>)
-      .def("stretches", lists<Shared, within, Mask>)
-      .def("count_crossings", count_crossings<Shared, Mask>)
       .def("closest_points", closest_points<Shared, Mask>)
       .def("locate", locate<Shared, Mask>)
       .def("winding_numbers", winding_numbers<Shared, Mask>)
@@ -249,33 +165,18 @@ auto bind_scene(py::module_& module, const char* name) {
       .def("corners", corners_in_scene<S>)
       .def("normals", normals_in_scene<S>)
       .def("bounds", [](const Shared& shared) { return corners_of(shared.state->bounds()); })
-      .def("nbytes", [](const Shared& shared) { return to_python(shared.state->bytes()); });
+      .def("nbytes", [](const Shared& shared) { return to_python(shared.state->bytes()); })
+      .def("to_bytes", to_bytes<Shared>)
+      .def("__reduce_ex__", reduced<Shared>);
   return scene;
-}
-
-[[noreturn]] void throw_without_file() {
-  throw std::invalid_argument(
-      "scene: no file holds a scene of float64; save its trees, or make it with dtype=numpy.float32");
 }
 
 }  // namespace
 
 void bind_scenes(py::module_& module) {
   bind_spheres(module);
-  using OfFloats = SharedScene<Scene>;
-  auto floats = bind_scene<Scene>(module, "Scene");
-  def_constructor(floats, made_from<OfFloats>);
-  floats.def("add_scene", add_scene)
-      .def("add_mesh", add_mesh)
-      .def("set_moving", set_moving)
-      .def("set_triangle_masks", set_triangle_masks)
-      .def("report", report_of_scene)
-      .def("to_bytes", to_bytes<OfFloats>)
-      .def("__reduce_ex__", reduced<OfFloats>);
-  auto doubles = bind_scene<SceneD>(module, "SceneD");
-  def_constructor(doubles, same_scene<SceneD>);
-  doubles.def("to_bytes", [](const SharedScene<SceneD>&) -> py::object { throw_without_file(); })
-      .def("__reduce_ex__", [](const SharedScene<SceneD>&, int) -> py::object { throw_without_file(); });
+  bind_scene<Scene>(module, "Scene").def("add_mesh", add_mesh);
+  bind_scene<SceneD>(module, "SceneD");
 }
 
 }  // namespace raylanes::python

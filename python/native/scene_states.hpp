@@ -13,6 +13,7 @@ template <class S>
 struct SharedScene {
   using Object = S;
   using Number = typename raylanes::detail::QueryTypes<S>::Number;
+  using Hit = typename raylanes::detail::QueryTypes<S>::Hit;
   using ClosestPoint = typename raylanes::detail::QueryTypes<S>::ClosestPoint;
   explicit SharedScene(S&& scene) : state(std::make_shared<S>(std::move(scene))) {}
   std::shared_ptr<S> state;
@@ -34,10 +35,6 @@ const S& tree_in(const SharedScene<S>&, const S& state) {
 template <class S>
 std::unique_ptr<SharedScene<S>> empty_scene() {
   return std::make_unique<SharedScene<S>>(S());
-}
-template <class S>
-std::unique_ptr<SharedScene<S>> same_scene(const SharedScene<S>& other) {
-  return std::make_unique<SharedScene<S>>(other);
 }
 
 // Whether work on so many instances ends before another thread notices that this one keeps the GIL.
@@ -92,10 +89,11 @@ std::uint32_t add(SharedScene<S>& shared, const py::object& part) {
   return number;
 }
 
-inline std::uint32_t add_scene(SharedScene<Scene>& shared, const SharedScene<Scene>& other) {
-  const std::shared_ptr<const Scene> added = other.state;
+template <class S>
+std::uint32_t add_scene(SharedScene<S>& shared, const SharedScene<S>& other) {
+  const std::shared_ptr<const S> added = other.state;
   std::uint32_t number = 0;
-  change(shared, is_quick(added->instance_count()), [&](Scene& scene) { number = scene.add(*added); });
+  change(shared, is_quick(added->instance_count()), [&](S& scene) { number = scene.add(*added); });
   return number;
 }
 
@@ -122,15 +120,11 @@ void replace(SharedScene<S>& shared, std::uint32_t geometry, const py::object& p
 template <class S>
 void refit_geometry(SharedScene<S>& shared, std::uint32_t geometry, const py::array& vertices,
                     const py::array& faces, int threads) {
-  const auto of_vertices = vertices_of<typename SharedScene<S>::Number>(vertices);
+  const auto of_vertices = vertices_of<NumberIn<SharedScene<S>>>(vertices);
   const IndexView of_faces = indices_of(faces);
   threads = usable_threads(threads);
-  change(shared, is_only_thread(), [&](S& scene) {
-    if constexpr (has_floats<S>)
-      scene.refit(geometry, of_vertices, of_faces, threads);
-    else
-      scene.replace(geometry, scene.tree(geometry).refitted(of_vertices, of_faces, threads));
-  });
+  change(shared, is_only_thread(),
+         [&](S& scene) { scene.refit(geometry, of_vertices, of_faces, threads); });
 }
 
 inline void require_as_many(std::size_t elements, std::size_t others) {
@@ -157,13 +151,8 @@ std::pair<std::size_t, std::size_t> place(SharedScene<S>& shared, std::uint32_t 
 // Throws before anything changes.
 template <class S>
 void require_instances(S& scene, const RayRecords<std::uint32_t>& instances) {
-  for (std::size_t i = 0; i < instances.count; ++i) {
-    if constexpr (has_floats<S>) {
-      if (scene.levels_of(instances[i]).size() > 1) scene.set_moving(instances[i]);  // which refuses it
-    } else {
-      static_cast<void>(scene.mask_of(instances[i]));
-    }
-  }
+  for (std::size_t i = 0; i < instances.count; ++i)
+    if (scene.levels_of(instances[i]).size() > 1) scene.set_moving(instances[i]);  // which refuses it
 }
 
 template <class S>
@@ -188,29 +177,29 @@ void set_mask(SharedScene<S>& shared, const py::array& instances, const py::arra
   });
 }
 
-inline void set_moving(SharedScene<Scene>& shared, const py::array& instances, bool moving) {
+template <class S>
+void set_moving(SharedScene<S>& shared, const py::array& instances, bool moving) {
   const auto of_instances = records_of<std::uint32_t>(instances);
-  change(shared, is_quick(of_instances.count), [&](Scene& scene) {
+  change(shared, is_quick(of_instances.count), [&](S& scene) {
     require_instances(scene, of_instances);
     for (std::size_t i = 0; i < of_instances.count; ++i) scene.set_moving(of_instances[i], moving);
   });
 }
 
-inline void set_triangle_masks(SharedScene<Scene>& shared, std::uint32_t geometry, const py::array& masks) {
+template <class S>
+void set_triangle_masks(SharedScene<S>& shared, std::uint32_t geometry, const py::array& masks) {
   const auto given = records_of<std::uint32_t>(masks);
   std::vector<std::uint32_t> words(given.count);
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = given[i];
   change(shared, is_quick(words.size() / 64),
-         [&](Scene& scene) { scene.set_triangle_masks(geometry, words); });
+         [&](S& scene) { scene.set_triangle_masks(geometry, words); });
 }
 
 // Whether an update ends so soon, even if it builds a tree over all triangles.
-inline bool is_quick_update(const Scene& scene) {
+template <class S>
+bool is_quick_update(const S& scene) {
   constexpr std::size_t most = 1 << 13;  // triangles
   return is_quick(scene.instance_count()) && (scene.report().mesh_triangles <= most || is_only_thread());
-}
-inline bool is_quick_update(const SceneD&) {
-  return is_only_thread();
 }
 template <class S>
 void update(SharedScene<S>& shared, int threads) {

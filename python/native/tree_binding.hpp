@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <raylanes/stretches.hpp>
+
 #include "filters.hpp"
 #include "listener.hpp"
 #include "names.hpp"
@@ -22,6 +24,7 @@ namespace raylanes::python {
 template <class T>
 struct SharedTree {
   using Number = T;
+  using Hit = HitOf<T>;
   using ClosestPoint = ClosestPointOf<T>;
   std::shared_ptr<TreeOf<T>> state;
   std::size_t left_out = 0;       // triangles that the build left out
@@ -104,19 +107,20 @@ inline PrimitiveView skips_of(const py::object& rows) {
           columns == 2 ? std::ptrdiff_t{index} : 0};
 }
 
-// The masks of triangles: None, or the mask of the call, the words, and the mask of its filter. The mask of a call to a
-// scene, where instances have masks.
+// The masks of triangles: None, or the mask of the call, the words, and the mask of its filter. For the instances of
+// a scene the mask of the call alone.
 template <class Options>
 void set_masks(Options& options, const py::object& masks) {
   if (masks.is_none()) return;
+  if (PyLong_Check(masks.ptr()) != 0) {
+    options.mask = masks.cast<std::uint32_t>();
+    return;
+  }
   const auto all = masks.cast<py::tuple>();
   options.mask = all[0].cast<std::uint32_t>();
   const auto words = all[1].cast<py::array>();
   options.masks = {static_cast<const std::uint32_t*>(words.data()), static_cast<std::size_t>(words.size())};
   if constexpr (requires { options.filter_mask; }) options.filter_mask = all[2].cast<std::uint32_t>();
-}
-inline void set_masks(ListOptions& options, std::uint32_t mask) {
-  options.mask = mask;
 }
 
 // The hits after which rays look for the next; None: none.
@@ -176,38 +180,44 @@ Options plain_options(const char* path, int threads, const py::object& active, s
   return options;
 }
 
-template <class T>
-void closest(const SharedTree<T>& shared, const py::object& rays, const py::array& hits, const py::tuple& how,
+// The numbers and the hits of a shared tree or scene.
+template <class Shared>
+using NumberIn = typename Shared::Number;
+template <class Shared>
+using HitIn = typename Shared::Hit;
+
+template <class Shared>
+void closest(const Shared& shared, const py::object& rays, const py::array& hits, const py::tuple& how,
              const py::object& active, const py::object& after, const py::object& filter) {
-  const RaysOf<T> from(rays);
-  const auto to = hits_of<T>(hits);
-  auto options = trace_options<T>(how, active, from.count);
-  options.after = hits_after<HitOf<T>>(after);
-  filtered_query<HitOf<T>>(shared, options, how[how_progress], from.count, filter,
-                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+  const RaysOf<NumberIn<Shared>> from(rays);
+  const auto to = writable_records_of<HitIn<Shared>>(hits);
+  auto options = trace_options<NumberIn<Shared>>(how, active, from.count);
+  options.after = hits_after<HitIn<Shared>>(after);
+  filtered_query<HitIn<Shared>>(shared, options, how[how_progress], from.count, filter,
+                           [&](const auto& tree, const auto& heard, const auto&... filters) {
                              tree.closest(from, to, filters..., heard);
                            });
 }
 
-template <class T>
-void closest_crossing(const SharedTree<T>& shared, const py::object& rays, const py::array& hits,
+template <class Shared>
+void closest_crossing(const Shared& shared, const py::object& rays, const py::array& hits,
                       const py::tuple& how, const py::object& active, const py::object& after) {
-  const RaysOf<T> from(rays);
-  const auto to = hits_of<T>(hits);
-  auto options = trace_options<T>(how, active, from.count);
-  options.after = hits_after<HitOf<T>>(after);
+  const RaysOf<NumberIn<Shared>> from(rays);
+  const auto to = writable_records_of<HitIn<Shared>>(hits);
+  auto options = trace_options<NumberIn<Shared>>(how, active, from.count);
+  options.after = hits_after<HitIn<Shared>>(after);
   query(shared, options, how[how_progress], from.count,
-        [&](const TreeOf<T>& tree, const auto& heard) { tree.closest_crossing(from, to, heard); });
+        [&](const auto& tree, const auto& heard) { tree.closest_crossing(from, to, heard); });
 }
 
-template <class T>
-void occluded(const SharedTree<T>& shared, const py::object& rays, const py::array& occluded,
+template <class Shared>
+void occluded(const Shared& shared, const py::object& rays, const py::array& occluded,
               const py::tuple& how, const py::object& active, const py::object& filter) {
-  const RaysOf<T> from(rays);
+  const RaysOf<NumberIn<Shared>> from(rays);
   const auto to = span_of<std::uint8_t>(occluded);
-  const auto options = trace_options<T>(how, active, from.count);
-  filtered_query<HitOf<T>>(shared, options, how[how_progress], from.count, filter,
-                           [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+  const auto options = trace_options<NumberIn<Shared>>(how, active, from.count);
+  filtered_query<HitIn<Shared>>(shared, options, how[how_progress], from.count, filter,
+                           [&](const auto& tree, const auto& heard, const auto&... filters) {
                              tree.occluded(from, to, filters..., heard);
                            });
 }
@@ -216,16 +226,16 @@ void occluded(const SharedTree<T>& shared, const py::object& rays, const py::arr
 template <class T>
 using Ends = std::optional<std::array<T, 2>>;
 
-template <class T>
-void occluded_from(const SharedTree<T>& shared, const std::array<T, 3>& from, const py::array& points,
-                   const py::array& occluded, const Ends<T>& ends, const py::tuple& how,
+template <class Shared>
+void occluded_from(const Shared& shared, const std::array<NumberIn<Shared>, 3>& from, const py::array& points,
+                   const py::array& occluded, const Ends<NumberIn<Shared>>& ends, const py::tuple& how,
                    const py::object& active, const py::object& filter) {
-  const auto to_points = vertices_of<T>(points);
+  const auto to_points = vertices_of<NumberIn<Shared>>(points);
   const auto to = span_of<std::uint8_t>(occluded);
-  const auto options = trace_options<T>(how, active, to_points.count);
-  filtered_query<HitOf<T>>(
+  const auto options = trace_options<NumberIn<Shared>>(how, active, to_points.count);
+  filtered_query<HitIn<Shared>>(
       shared, options, how[how_progress], to_points.count, filter,
-      [&](const TreeOf<T>& tree, const auto& heard, const auto&... filters) {
+      [&](const auto& tree, const auto& heard, const auto&... filters) {
         if (ends)
           tree.occluded_from(from, to_points, to, filters..., {(*ends)[0], (*ends)[1]}, heard);
         else
@@ -242,12 +252,12 @@ void corners(const SharedTree<T>& shared, const py::array& primitives, const py:
   query(shared, [&](const TreeOf<T>& tree) { tree.corners(names, triangles); });
 }
 
-// Offsets and items, as bytes. Masks: as set_masks() takes them.
-template <class Shared, auto list, class Masks>
+// Offsets and items, as bytes.
+template <class Shared, auto list>
 py::tuple lists(const Shared& shared, const py::object& rays, std::uint32_t max_count, const char* facing,
                 const char* path, int threads, const py::object& active, const py::object& progress,
-                const py::object& skip, Masks masks) {
-  const RaysOf<typename Shared::Number> from(rays);
+                const py::object& skip, const py::object& masks) {
+  const RaysOf<NumberIn<Shared>> from(rays);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.max_count = max_count;
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
@@ -258,11 +268,11 @@ py::tuple lists(const Shared& shared, const py::object& rays, std::uint32_t max_
   return py::make_tuple(bytes_kept(std::move(found.offsets)), bytes_kept(std::move(found.items)));
 }
 
-template <class Shared, class Masks>
+template <class Shared>
 void count_crossings(const Shared& shared, const py::object& rays, const py::array& counts,
                      const char* facing, const char* path, int threads, const py::object& active,
-                     const py::object& progress, const py::object& skip, Masks masks) {
-  const RaysOf<typename Shared::Number> from(rays);
+                     const py::object& progress, const py::object& skip, const py::object& masks) {
+  const RaysOf<NumberIn<Shared>> from(rays);
   const auto to = span_of<CrossingCount>(counts);
   auto options = plain_options<ListOptions>(path, threads, active, from.count);
   options.facing = named<Facing>("facing", facing_names, facing), options.skip = skips_of(skip);
@@ -271,12 +281,33 @@ void count_crossings(const Shared& shared, const py::object& rays, const py::arr
         [&](const auto& tree, const auto& heard) { tree.count_crossings(from, to, heard); });
 }
 
+// Binds the calls with rays of a class, whose C++ class is Object.
+template <class Object, class Shared>
+void def_ray_calls(py::class_<Shared>& of) {
+  using Rays = RayRecords<RayOf<NumberIn<Shared>>>;
+  using Crossings = RayLists<typename raylanes::detail::QueryTypes<Object>::Crossing>;
+  using Stretches = decltype(stretches(std::declval<const Object&>(), Rays()));
+  constexpr RayLists<HitIn<Shared>> (SurfaceQueries<Object>::*hits)(Rays, const ListOptions&) const =
+      &Object::all_hits;
+  constexpr Crossings (SurfaceQueries<Object>::*crossings)(Rays, const ListOptions&) const =
+      &Object::crossings;
+  constexpr Stretches (*within)(const Object&, Rays, const ListOptions&) = &stretches;
+  of.def("closest", closest<Shared>)
+      .def("closest_crossing", closest_crossing<Shared>)
+      .def("occluded", occluded<Shared>)
+      .def("occluded_from", occluded_from<Shared>)
+      .def("all_hits", lists<Shared, hits>)
+      .def("crossings", lists<Shared, crossings>)
+      .def("stretches", lists<Shared, within>)
+      .def("count_crossings", count_crossings<Shared>);
+}
+
 // Calls with points. Mask: that of a query of scenes, or nothing.
 template <class Shared, class... Mask>
 void locate(const Shared& shared, const py::array& points, const py::array& locations, const char* rule,
             const char* path, int threads, const py::object& active, const py::object& progress,
             Mask... mask) {
-  const auto from = vertices_of<typename Shared::Number>(points);
+  const auto from = vertices_of<NumberIn<Shared>>(points);
   const auto bytes = span_of<std::uint8_t>(locations);
   const std::span<Location> to(reinterpret_cast<Location*>(bytes.data()), bytes.size());
   auto options = plain_options<LocateOptions>(path, threads, active, from.count);
@@ -290,8 +321,8 @@ template <class Shared, class... Mask>
 void winding_numbers(const Shared& shared, const py::array& points, const py::array& numbers, double accuracy,
                      const char* path, int threads, const py::object& active, const py::object& progress,
                      Mask... mask) {
-  const auto from = vertices_of<typename Shared::Number>(points);
-  const auto to = span_of<typename Shared::Number>(numbers);
+  const auto from = vertices_of<NumberIn<Shared>>(points);
+  const auto to = span_of<NumberIn<Shared>>(numbers);
   auto options = plain_options<WindingOptions>(path, threads, active, from.count);
   options.accuracy = accuracy;
   ((options.mask = mask), ...);
@@ -301,11 +332,11 @@ void winding_numbers(const Shared& shared, const py::array& points, const py::ar
 
 template <class Shared, class... Mask>
 void closest_points(const Shared& shared, const py::array& points, const py::array& answers,
-                    typename Shared::Number max_distance, const char* path, int threads,
+                    NumberIn<Shared> max_distance, const char* path, int threads,
                     const py::object& active, const py::object& progress, Mask... mask) {
-  const auto from = vertices_of<typename Shared::Number>(points);
+  const auto from = vertices_of<NumberIn<Shared>>(points);
   const auto to = span_of<typename Shared::ClosestPoint>(answers);
-  auto options = plain_options<typename CallTypesOf<typename Shared::Number>::ClosestOptions>(
+  auto options = plain_options<typename CallTypesOf<NumberIn<Shared>>::ClosestOptions>(
       path, threads, active, from.count);
   options.max_distance = max_distance;
   ((options.mask = mask), ...);
@@ -315,11 +346,11 @@ void closest_points(const Shared& shared, const py::array& points, const py::arr
 
 template <class Shared, class... Mask>
 void signed_distances(const Shared& shared, const py::array& points, const py::array& distances,
-                      const char* rule, typename Shared::Number max_distance, const char* path, int threads,
+                      const char* rule, NumberIn<Shared> max_distance, const char* path, int threads,
                       const py::object& active, const py::object& progress, Mask... mask) {
-  const auto from = vertices_of<typename Shared::Number>(points);
-  const auto to = span_of<typename Shared::Number>(distances);
-  auto options = plain_options<typename CallTypesOf<typename Shared::Number>::DistanceOptions>(
+  const auto from = vertices_of<NumberIn<Shared>>(points);
+  const auto to = span_of<NumberIn<Shared>>(distances);
+  auto options = plain_options<typename CallTypesOf<NumberIn<Shared>>::DistanceOptions>(
       path, threads, active, from.count);
   options.rule = named<InsideRule>("rule", inside_rule_names, rule);
   options.max_distance = max_distance;

@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <raylanes/stretches.hpp>
-
 #include "mesh_holes.hpp"
 #include "module.hpp"
 #include "tree_states.hpp"
@@ -31,22 +29,9 @@ py::dict common_report(const Report& report, std::string_view builder) {
 
 template <class T>
 void bind_queries(py::module_& module, const char* name) {
-  using Rays = RayRecords<RayOf<T>>;
-  using Surfaces = SurfaceQueries<TreeOf<T>>;
-  constexpr RayLists<HitOf<T>> (Surfaces::*hits)(Rays, const ListOptions&) const = &TreeOf<T>::all_hits;
-  constexpr RayLists<CrossingOf<T>> (Surfaces::*crossings_of_rays)(Rays, const ListOptions&) const =
-      &TreeOf<T>::crossings;
-  constexpr RayLists<StretchRecord<T>> (*within)(const TreeOf<T>&, Rays, const ListOptions&) = &stretches;
-  py::class_<SharedTree<T>>(module, name)
-      .def("closest", closest<T>)
-      .def("closest_crossing", closest_crossing<T>)
-      .def("occluded", occluded<T>)
-      .def("occluded_from", occluded_from<T>)
-      .def("corners", corners<T>)
-      .def("all_hits", lists<SharedTree<T>, hits, py::object>)
-      .def("crossings", lists<SharedTree<T>, crossings_of_rays, py::object>)
-      .def("stretches", lists<SharedTree<T>, within, py::object>)
-      .def("count_crossings", count_crossings<SharedTree<T>, py::object>)
+  py::class_<SharedTree<T>> bound(module, name);
+  def_ray_calls<TreeOf<T>>(bound);
+  bound.def("corners", corners<T>)
       .def("locate", locate<SharedTree<T>>)
       .def("winding_numbers", winding_numbers<SharedTree<T>>)
       .def("closest_points", closest_points<SharedTree<T>>)

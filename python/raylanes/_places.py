@@ -20,7 +20,7 @@ class Places:
         """Place a geometry once or many times. update() must follow.
 
         If it is a scene, its instance j becomes instance `returned + 1 + j` of this scene. Its transform is the product
-        of both, rounded to float32, and its mask has the bits of both. Hits name these instances; levels_of() tells
+        of both, rounded to self.dtype, and its mask has the bits of both. Hits name these instances; levels_of() tells
         their way, and name_of() the names that they have in their own scene.
 
         Parameters
@@ -147,7 +147,6 @@ class Places:
         --------
         >>> scene.set_moving(0)
         """
-        self._require_floats("set_moving")
         instances = unsigned("instance", instance)
         self._tree.set_moving(_flat(instances, instances.shape), flag("moving", moving))
 

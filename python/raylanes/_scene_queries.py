@@ -68,10 +68,9 @@ class SceneQueries:
         array([False])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
-        bits_of_mask = _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip), _mask(mask))
         return nearest(self._numbers, SceneHits, rays, out, active, lambda given, answer, bits: self._tree.closest(
-            given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer), self._filter(filter)))
+            given, answer.rows, asked, bits, hits_after(after, answer), self._filter(filter)))
 
     def closest_crossing(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                          after=None, out=None, active=None, facing="any", skip=None, threads=0, progress=None):
@@ -106,11 +105,11 @@ class SceneQueries:
         (array([ True]), array([False]))
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, _skipped(skip))
-        bits_of_mask = _mask(mask)
+        asked = how("exact", "reproducible", "automatic", "none", facing, threads, progress, _skipped(skip),
+                    _mask(mask))
         return nearest(self._numbers, SceneHits, rays, out, active,
                        lambda given, answer, bits: self._tree.closest_crossing(
-                           given, answer.rows, asked, bits, bits_of_mask, hits_after(after, answer)))
+                           given, answer.rows, asked, bits, hits_after(after, answer)))
 
     def occluded(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT, filter=None,
                  out=None, active=None, test="exact", grade="reproducible", mode="automatic", hint="none", facing="any",
@@ -136,10 +135,9 @@ class SceneQueries:
         array([False,  True])
         """
         rays = given_rays(rays, origins, directions, tmin, tmax)
-        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
-        bits_of_mask = _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip), _mask(mask))
         return shadows(self._numbers, rays, out, active, lambda given, answers, bits: self._tree.occluded(
-            given, answers, asked, bits, bits_of_mask, self._filter(filter)))
+            given, answers, asked, bits, self._filter(filter)))
 
     def occluded_from(self, origin, points, *, start=0.0, end=1.0, mask=EVERY_BIT, filter=None, out=None, active=None,
                       test="exact", grade="reproducible", mode="automatic", hint="none", facing="any", skip=None,
@@ -171,11 +169,10 @@ class SceneQueries:
         >>> scene.occluded_from([0, 0, 5], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
-        bits_of_mask = _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip), _mask(mask))
         return shadows_from(self._numbers, origin, points, (start, end), out, active,
                             lambda *given: self._tree.occluded_from(
-                                *given[:-1], asked, given[-1], bits_of_mask, self._filter(filter)))
+                                *given[:-1], asked, given[-1], self._filter(filter)))
 
     def occluded_towards(self, direction, points, *, mask=EVERY_BIT, filter=None, out=None, active=None, test="exact",
                          grade="reproducible", mode="automatic", hint="none", facing="any", skip=None, threads=0,
@@ -203,10 +200,9 @@ class SceneQueries:
         >>> scene.occluded_towards([0, 0, 1], [[0, 0, -5], [9, 0, -5]])
         array([ True, False])
         """
-        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip))
-        bits_of_mask = _mask(mask)
+        asked = how(test, grade, mode, hint, facing, threads, progress, _skipped(skip), _mask(mask))
         return shadows_towards(self._numbers, direction, points, out, active, lambda *given: self._tree.occluded_from(
-            *given[:-1], asked, given[-1], bits_of_mask, self._filter(filter)))
+            *given[:-1], asked, given[-1], self._filter(filter)))
 
     def all_hits(self, rays=None, *, origins=None, directions=None, tmin=None, tmax=None, mask=EVERY_BIT,
                  max_count=None, facing="any", skip=None, active=None, threads=0, progress=None):

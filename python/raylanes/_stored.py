@@ -6,7 +6,7 @@ import numpy as np
 
 from . import _native
 from ._arrays import DOUBLES, FLOATS
-from ._files import write_whole
+from ._files import Headed, write_whole
 from ._scalars import path_of
 
 
@@ -30,6 +30,8 @@ class Copied:
 
 class Stored(Copied):
     """An object with the native object `self._tree`, which `_native_of` makes from a file."""
+
+    _natives = {}  # the other native classes than `_native_tree`, by how their files begin
 
     def save(self, file):
         """Write this to a file; load() reads it on any machine.
@@ -81,7 +83,9 @@ class Stored(Copied):
     @classmethod
     def _native_of(cls, source):
         """The native object of a file's bytes, or of the function that reads them."""
-        return cls._native_tree(source)
+        source = Headed(source) if callable(source) else source
+        head = source.head if isinstance(source, Headed) else source[:16].tobytes()
+        return cls._natives.get(head[:13], cls._native_tree)(source)
 
 
 class StoredTree(Stored):

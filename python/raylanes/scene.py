@@ -33,8 +33,8 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
     decides as it does alone; t is the same in both spaces. Hits are ordered by t, then instance, then primitive. By the
     test "exact", and of spheres, their bytes do not depend on ISA path, mode or number of threads.
 
-    A scene of float64 has no test but "exact". It takes no spheres and no scenes, and has no set_triangle_masks(),
-    set_moving(), report() and save(): these raise ValueError. A scene made with dtype=numpy.float32 has them.
+    A scene of float64 has no test but "exact", and takes no spheres: these raise ValueError. A scene made with
+    dtype=numpy.float32 has them.
 
     An instance is never hit if its mask has no bit in common with the mask of the call; if its geometry is empty; if
     its transform is not finite, or singular; or if it reaches beyond the largest number of the type. A ray misses an
@@ -74,11 +74,11 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
     (array([ 3., inf], dtype=float32), array([1], dtype=uint32))
     """
 
-    _native_tree = _native.Scene
+    _native_tree, _natives = _native.Scene, {b"raylanes scnd": _native.SceneD}
     _tree = _native.SceneD()  # of all scenes for which neither a geometry nor dtype has decided; it stays empty
     _rounds = False  # whether dtype asked for the rounding of vertices
 
-    def __init__(self, dtype=None):
+    def __init__(self, *, dtype=None):
         if dtype is not None:
             self._tree = _native_for(numbers_for(dtype).real)
             self._rounds = True
@@ -119,8 +119,7 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         Raises
         ------
         ValueError
-            If the tree has another dtype than the scene, or Bvh refuses the mesh. If a scene of float64 is to have
-            spheres or a scene.
+            If the tree has another dtype than the scene, or Bvh refuses the mesh.
 
         Examples
         --------
@@ -165,16 +164,16 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         return kept
 
     def _add_scene(self, scene):
-        names, names_within, native = scene._names.copy(), scene._names_within, scene._tree
+        names, names_within, native = scene._names.copy(), scene._names_within, vars(scene).get("_tree")
 
         def add(to):
-            for of in (to, native):
-                if isinstance(of, _native.SceneD):
-                    raise ValueError("tree: a scene of float64 holds no scenes and is in none: add its trees one by one"
-                                     ", or make both scenes with dtype=numpy.float32")
-            return to.add_scene(native)
+            given = type(to)() if native is None else native  # one without geometries has any type
+            if type(given) is not type(to):
+                raise ValueError(f"tree: the scene has {_dtype_in(to)}, this Scene has {_dtype_in(given)}; give it a "
+                                 f"Scene made with dtype=numpy.{_dtype_in(to)}")
+            return to.add_scene(given)
 
-        added = self._added(_dtype_in(native), add)
+        added = self._added(scene.dtype, add)
         if names or names_within:
             within = {added + 1 + geometry: others for geometry, others in names_within.items()}
             self._names_within = {**self._names_within, **within, added: names}
@@ -270,7 +269,6 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         >>> scene.set_triangle_masks(0, None)
         >>> scene.update()
         """
-        self._require_floats("set_triangle_masks")
         self._tree.set_triangle_masks(geometry_index(geometry), words_of([] if masks is None else masks))
 
     def update(self, *, threads=0):
@@ -310,12 +308,7 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         >>> scene.report()['common_trees']
         1
         """
-        self._require_floats("report")
         return self._tree.report()
-
-    def _require_floats(self, call):
-        if isinstance(self._tree, _native.SceneD):
-            raise ValueError(f"{call}: a scene of float64 has no {call}(); one made with dtype=numpy.float32 has it")
 
     @property
     def geometry_count(self):

@@ -5,7 +5,6 @@ import numpy as np
 from . import _native
 from ._arrays import (DOUBLES, FLOATS, changes, equal_corners, faces_of, numbers, numbers_for, require_kept,
                       vertices_of)
-from ._files import Headed
 from ._meshes import parts_of, warn
 from ._point_queries import PointQueries
 from ._ray_queries import RayQueries
@@ -104,7 +103,7 @@ class Bvh(_Tree):
     array([5.])
     """
 
-    _native_tree = _native.Bvh
+    _native_tree, _natives = _native.Bvh, {b"raylanes doub": _native.BvhD}
     _rounds = False  # whether dtype asked for the rounding of vertices
 
     def __init__(self, vertices, faces=None, *, builder="binned_sah", threads=0, optimize=False, rays=0, dtype=None,
@@ -127,12 +126,6 @@ class Bvh(_Tree):
         if not self._rounds and of_tree.dtype == np.float64 and changes(given.reshape(of_tree.shape), of_tree):
             warn(f"vertices: float64 does not hold these {given.dtype} numbers, and rounds them to nearest. Subtract a "
                  "point near the mesh first, or pass dtype=numpy.float64 if rounding is welcome")
-
-    @classmethod
-    def _native_of(cls, source):
-        source = Headed(source) if callable(source) else source
-        head = source.head if isinstance(source, Headed) else source[:16].tobytes()
-        return (_native.BvhD if head.startswith(b"raylanes doub") else _native.Bvh)(source)
 
     def refit(self, vertices, faces=None, *, threads=0):
         """Make this the tree of another mesh with as many triangles, such as the same mesh in motion.

@@ -41,7 +41,7 @@ print(scene.occluded([], filter=lambda indices, hits: hits.instance == indices),
 print(tree.closest([], filter=lambda indices, hits: hits.primitive == indices).t, spheres.occluded_from([], []))
 print(hits.interpolate([[1.0]], [[[0, 0, 0]]]).shape, spheres.report()["left_out"], raylanes.Scene.load("file").bounds)
 print(scene.name_of(hits.instance), scene.instances_named("a").dtype, scene.place(0, name="a"))
-print(raylanes.Scene(np.float64).dtype, raylanes.Scene(dtype=np.float32).transform_of(0).dtype)
+print(raylanes.Scene(dtype=np.float64).dtype, raylanes.Scene(dtype=np.float32).transform_of(0).dtype)
 print(hits.columns()["t"].shape, tree.all_hits([]).columns()["ray"].dtype)
 print(raylanes.trimesh.RayMeshIntersector(geometry=None, scale_to_box=False).intersects_first([], []).shape)
 """
@@ -54,7 +54,7 @@ bad = {"raylanes.sqrt(2, '3ulp')": "3ulp", "raylanes.Bvh([], [], dtype=int)": "d
        "[layer.side for layer in raylanes.Bvh([], []).all_hits([])]": "side",
        "raylanes.Scene().add(raylanes.KdTree([], []))": "KdTree",
        "raylanes.SphereTree([], [], builder='auto')": "builder", "raylanes.Scene().instances_named(0)": "int",
-       "raylanes.Scene().closest([]).normals([], [])": "normals", "raylanes.Scene(int)": "Scene",
+       "raylanes.Scene().closest([]).normals([], [])": "normals", "raylanes.Scene(dtype=int)": "dtype",
        "raylanes.trimesh.RayMeshIntersector(None).intersects_any([], [], multiple_hit=1)": "multiple_hit"}
 
 

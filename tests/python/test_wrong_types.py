@@ -147,7 +147,7 @@ def test_words_of_the_binding_reach_nobody(calls, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     refused = 0
     for call, arguments, options in calls():
-        cube().save("tree"), raylanes.Scene(np.float32).save("scene")
+        cube().save("tree"), raylanes.Scene(dtype=np.float32).save("scene")
         for some, others in variants(arguments, options):
             try:
                 call(*some, **others)

@@ -165,18 +165,26 @@ def calls_of_scenes_of_doubles():
     scene = placed(tree)
     hits = scene.closest(rays, threads=1)
 
-    def answered(of):
-        return of.closest(rays, threads=1).tobytes(), repr(of), of.bounds.tobytes(), of.transform_of([0, 1]).tobytes()
+    data = saved(scene)
 
     def rearranged(of):
-        of.move(0, np.eye(4)), of.set_mask([0, 1], [1, 2]), of.place(0, name="third")
+        of.move(0, np.eye(4)), of.set_mask([0, 1], [1, 2]), of.place(0, name="third"), of.set_moving(0)
         of.refit(0, doubles[::-1], faces, threads=1), of.replace(of.add(doubles, faces, threads=1), tree)
-        of.update(threads=1)
+        of.place(of.add(scene)), of.update(threads=1)
         return of
 
-    yield "Scene(float64)", lambda: answered(placed(tree))
-    yield "Scene(float64, changed)", lambda: answered(rearranged(placed(tree)))
-    yield "Scene(float64, copied)", lambda: answered(rearranged(copy.copy(scene)))
+    def masked():
+        of = placed(tree)
+        of.set_triangle_masks(0, range(50)), of.update(threads=1)
+        return of
+
+    yield "Scene(float64)", lambda: saved(placed(tree))
+    yield "Scene(float64, changed)", lambda: saved(rearranged(placed(tree)))
+    yield "Scene(float64, copied)", lambda: saved(rearranged(copy.copy(scene)))
+    yield "Scene(float64).load", lambda: saved(raylanes.Scene.load(io.BytesIO(data)))
+    yield "pickle of Scene(float64)", lambda: saved(pickle.loads(pickle.dumps(scene)))
+    yield "repr(Scene(float64))", lambda: (repr(scene), scene.report(), scene.bounds.tobytes())
+    yield "Scene(float64).closest(masks)", lambda: masked().closest(rays, mask=2, threads=1).tobytes()
     yield "Scene(float64).occluded", lambda: scene.occluded(rays, filter=even, threads=1).tobytes()
     yield "Scene(float64).closest(after)", lambda: scene.closest(rays, after=hits, active=active, threads=1).tobytes()
     yield "Scene(float64).closest(skip)", lambda: scene.closest(rays, skip=hits, filter=even, threads=1).tobytes()
@@ -246,19 +254,24 @@ def native_calls():
         rays, 0xFFFFFFFF, "any", None, 1, bits, abs, np.zeros(len(rays), np.uint32), (2, of_triangles, 2))]
     yield "_native.Bvh(progress)", lambda: _native.Bvh(
         vertices, faces, "binned_sah", 1, False, 0.0, abs).nbytes()
-    yield from native_calls_of_scenes(tree)
-    yield from native_calls_of_scenes_of_doubles(_native.BvhD(of_doubles))
+    spheres = _native.SphereTree(np.ones((9, 4), np.float32), "median", 1)
+    yield "_native.SphereTree", lambda: _native.SphereTree(spheres.spheres(), "median", 1).spheres().tobytes()
+    yield "_native.SphereTree.reduce", lambda: spheres.__reduce_ex__(4)[1]
+    yield "_native.SphereTree.reports", lambda: (spheres.bounds(), spheres.nbytes(), spheres.left_out(),
+                                                 spheres.builder(), _native.SphereTree(spheres).nbytes())
+    yield from native_calls_of_scenes(_native.Scene, np.float32, tree, spheres)
+    yield from native_calls_of_scenes(_native.SceneD, np.float64, *[_native.BvhD(of_doubles)] * 2)
     yield "_native.closed_report", lambda: _native.closed_report(vertices, faces, 16)
     yield "_native.paths", lambda: (_native.paths(), _native.active_path(), _native.find_path("scalar"))
 
 
-def native_calls_of_scenes(tree):
-    places, masks = np.tile(np.float32(np.eye(4)[:3].reshape(12)), (3, 1)), np.arange(3, dtype=np.uint32)
-    spheres, records = _native.SphereTree(np.ones((9, 4), np.float32), "median", 1), np.zeros((3, 14), np.float32)
+def native_calls_of_scenes(kind, real, tree, other):
+    places, masks = np.tile(np.eye(4, dtype=real)[:3].reshape(12), (3, 1)), np.arange(3, dtype=np.uint32)
+    records, name = np.zeros((3, 8 + places[0].nbytes), np.uint8), f"_native.{kind.__name__}"
 
     def made():
-        scene = _native.Scene()
-        scene.add(tree), scene.add(spheres)
+        scene = kind()
+        scene.add(tree), scene.add(other)
         scene.place(0, places, masks), scene.place(1, places[:1], masks[:1])
         scene.update(1)
         return scene
@@ -270,36 +283,12 @@ def native_calls_of_scenes(tree):
         return scene.to_bytes(), scene.bounds(), scene.nbytes(), scene.instance_count(), records.tobytes()
 
     data = made().to_bytes()
-    yield "_native.Scene", lambda: made().to_bytes()
-    yield "_native.Scene(data)", lambda: _native.Scene(data).to_bytes()
-    yield "_native.Scene(read)", lambda: _native.Scene(io.BytesIO(data).read).to_bytes()
-    yield "_native.Scene(changed)", lambda: after_changes(made())
-    yield "_native.Scene(scene)", lambda scene=made(): after_changes(_native.Scene(scene))
-    yield "_native.Scene.reduce", lambda scene=made(): scene.__reduce_ex__(4)[1]
-    yield "_native.SphereTree", lambda: _native.SphereTree(spheres.spheres(), "median", 1).spheres().tobytes()
-    yield "_native.SphereTree.reduce", lambda: spheres.__reduce_ex__(4)[1]
-    yield "_native.SphereTree.reports", lambda: (spheres.bounds(), spheres.nbytes(), spheres.left_out(),
-                                                 spheres.builder(), _native.SphereTree(spheres).nbytes())
-
-
-def native_calls_of_scenes_of_doubles(tree):
-    places, masks = np.tile(np.eye(4)[:3].reshape(12), (3, 1)), np.arange(3, dtype=np.uint32)
-    records = np.zeros((3, 13))
-
-    def made():
-        scene = _native.SceneD()
-        scene.add(tree), scene.place(0, places, masks), scene.update(1)
-        return scene
-
-    def after_changes(scene):
-        scene.move(masks, places), scene.set_mask(masks, masks), scene.replace(0, tree)
-        scene.refit(0, doubles, faces, 1), scene.update(1), scene.instances(masks, records)
-        return (scene.bounds(), scene.nbytes(), scene.instance_count(), records.tobytes(),
-                scene.levels_of(masks)[0].tobytes())
-
-    yield "_native.SceneD", lambda: made().nbytes()
-    yield "_native.SceneD(changed)", lambda: after_changes(made())
-    yield "_native.SceneD(scene)", lambda scene=made(): after_changes(_native.SceneD(scene))
+    yield name, lambda: made().to_bytes()
+    yield f"{name}(data)", lambda: kind(data).to_bytes()
+    yield f"{name}(read)", lambda: kind(io.BytesIO(data).read).to_bytes()
+    yield f"{name}(changed)", lambda: after_changes(made())
+    yield f"{name}(scene)", lambda scene=made(): after_changes(kind(scene))
+    yield f"{name}.reduce", lambda scene=made(): scene.__reduce_ex__(4)[1]
 
 
 def first_calls():

@@ -21,7 +21,7 @@ def dyadic_transform(random):
     return np.column_stack([scaled, random.integers(-4, 5, 3) / 4])
 
 
-types = [np.float32, np.float64]
+number_types = [np.float32, np.float64]
 far = 2.0 ** np.array([19, 22, 8]) + 2.0**-20  # as UTM coordinates are; floats are 0.25 apart there
 
 

@@ -5,7 +5,7 @@ import pytest
 
 import raylanes
 from meshes import cube, lattice
-from parts import types
+from parts import number_types
 
 kinds = [(raylanes.Bvh, np.float32), (raylanes.Bvh, np.float64), (raylanes.KdTree, np.float32)]
 
@@ -45,7 +45,7 @@ def test_closest_crossings_off_edges_are_the_first_crossings(kind, dtype):
             assert hit["primitive"] == (crossings.primitive[0] if len(crossings) else raylanes.no_primitive)
 
 
-@pytest.mark.parametrize("dtype", types)
+@pytest.mark.parametrize("dtype", number_types)
 def test_closest_crossings_in_scenes(dtype):
     scene, rays = raylanes.Scene(), raylanes.rays(*touching)
     part = scene.add(cube(dtype=dtype))

@@ -7,10 +7,10 @@ import pytest
 
 import raylanes
 from meshes import cube, lattice, random_rays
-from parts import Parts, nearest, types
+from parts import Parts, nearest, number_types
 
 
-@pytest.fixture(scope="module", params=types)
+@pytest.fixture(scope="module", params=number_types)
 def parts(request):
     return Parts(0, dtype=request.param)
 
@@ -58,7 +58,7 @@ def test_filters_get_indices_and_hits_on_the_calling_thread(parts):
     assert (out[~active] == np.ones(1, out.dtype)).all() and (out["instance"][active] == raylanes.no_part).all()
 
 
-@pytest.mark.parametrize("dtype", types)
+@pytest.mark.parametrize("dtype", number_types)
 def test_filters_may_use_the_scene(dtype):
     """A query within a query; a change is that of later queries."""
     scene, rays = raylanes.Scene(), random_rays(1, 500)

@@ -5,10 +5,10 @@ import pytest
 
 import raylanes
 from meshes import any_bits, cube_faces, cube_vertices, random_rays, sphere, supported
-from parts import Parts, miss, nearest, sphere_hits, types
+from parts import Parts, miss, nearest, sphere_hits, number_types
 
 
-@pytest.fixture(scope="module", params=types)
+@pytest.fixture(scope="module", params=number_types)
 def expected(request):
     """Parts with their scene and all hits, by the mask of the call."""
     return [(parts, parts.scene(), {mask: parts.hits(mask) for mask in (0xFFFFFFFF, 0b101, 0b1000)})

@@ -5,10 +5,10 @@ import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, same
-from parts import types
+from parts import number_types
 
 INSIDE, ON, OUTSIDE = raylanes.INSIDE, raylanes.ON, raylanes.OUTSIDE
-typed = pytest.mark.parametrize("dtype", types)
+typed = pytest.mark.parametrize("dtype", number_types)
 
 
 def shells(dtype=np.float32):

@@ -9,7 +9,7 @@ import pytest
 
 import raylanes
 from meshes import cube, cube_faces, cube_vertices, random_rays
-from parts import Parts, types
+from parts import Parts, number_types
 
 pandas = None
 try:
@@ -30,7 +30,7 @@ def scene_of_names(dtype=np.float32):
     return scene
 
 
-@pytest.mark.parametrize("dtype", types)
+@pytest.mark.parametrize("dtype", number_types)
 def test_hits_have_the_names_of_their_instances(dtype):
     scene = scene_of_names(dtype)
     names = np.array(["left", "middle", "left", "", "behind", ""])
@@ -48,8 +48,9 @@ def test_hits_have_the_names_of_their_instances(dtype):
     assert scene.instances_named("left").dtype == np.int64
 
 
-def test_names_are_those_of_a_copy_alone():
-    scene = scene_of_names()
+@pytest.mark.parametrize("dtype", number_types)
+def test_names_are_those_of_a_copy_alone(dtype):
+    scene = scene_of_names(dtype)
     others = copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))
     assert scene.place(0, name="first") == 5
     for number, other in enumerate(others):
@@ -79,7 +80,7 @@ def test_wrong_names_are_refused():
     assert scene.instance_count == 5 and scene.instances_named("a").size == 0
 
 
-@pytest.mark.parametrize("dtype", types)
+@pytest.mark.parametrize("dtype", number_types)
 def test_a_mesh_replaces_a_geometry(dtype):
     scene = scene_of_names(dtype)
     rays = random_rays(6, 500, reach=5)

@@ -10,6 +10,7 @@ import pytest
 
 import raylanes
 from meshes import cube_faces, cube_vertices, random_rays, sphere
+from parts import number_types
 from test_processes import statuses_of_children
 from test_sharing import turns_during
 
@@ -20,9 +21,9 @@ def moved_by(x):
     return [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0]]
 
 
-def scene_of(size=1, places=(0, 3)):
+def scene_of(size=1, places=(0, 3), dtype=np.float32):
     scene = raylanes.Scene()
-    scene.place(scene.add(raylanes.Bvh(cube_vertices * np.float32(size), cube_faces)), [moved_by(x) for x in places])
+    scene.place(scene.add(cube_vertices.astype(dtype) * dtype(size), cube_faces), [moved_by(x) for x in places])
     scene.update()
     return scene
 
@@ -50,10 +51,11 @@ def test_queries_see_each_change_whole():
     assert not wrong
 
 
-def test_no_change_is_lost():
+@pytest.mark.parametrize("dtype", number_types)
+def test_no_change_is_lost(dtype):
     """Each thread places instances and gives them its mask, while others update and ask. A copy of so many instances
     takes long enough for other threads to change the scene meanwhile."""
-    scene, before = scene_of(places=np.arange(4000)), 4000
+    scene, before = scene_of(places=np.arange(4000), dtype=dtype), 4000
 
     def change(number):
         mine = []
@@ -138,8 +140,9 @@ def _traced(arguments):
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
-def test_processes(method):
-    scene, spheres = scene_of(), raylanes.SphereTree([[0, 0, 0]], 1)
+@pytest.mark.parametrize("dtype", number_types)
+def test_processes(method, dtype):
+    scene, spheres = scene_of(dtype=dtype), raylanes.SphereTree([[0, 0, 0]], 1)
     expected = [_traced((scene, spheres, part)) for part in np.array_split(rays, 4)]
     with multiprocessing.get_context(method).Pool(2) as pool:
         arguments = [(scene, spheres, part) for part in np.array_split(rays, 4)]

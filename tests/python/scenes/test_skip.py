@@ -5,7 +5,7 @@ import pytest
 
 import raylanes
 from meshes import cube, lattice
-from parts import types
+from parts import number_types
 
 kinds = [(raylanes.Bvh, np.float32), (raylanes.Bvh, np.float64), (raylanes.KdTree, np.float32)]
 
@@ -51,7 +51,7 @@ def test_a_point_does_not_shadow_itself():
     assert tree.occluded_from([0.1, 0.2, 0], [below], end=0.999).tolist() == [False]
 
 
-@pytest.mark.parametrize("dtype", types)
+@pytest.mark.parametrize("dtype", number_types)
 def test_skip_in_scenes_names_an_instance(dtype):
     scene = raylanes.Scene()
     part = scene.add(cube(dtype=dtype))
