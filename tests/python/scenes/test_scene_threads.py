@@ -114,8 +114,11 @@ def test_others_run_while_the_library_works():
     part = scene.add(raylanes.Bvh(*sphere(triangles=100000)))
     scene.place(part, np.eye(4) * np.ones((200000, 1, 1)))
     scene.update()
-    few = scene_of()
-    for work in (scene.update, lambda: few.closest(many, threads=1), lambda: raylanes.SphereTree(many["origin"], 1)):
+    few, cubes = scene_of(), [scene_of(dtype=dtype) for dtype in number_types]
+    for each in cubes:
+        each.place(0, np.zeros((200000, 3, 4)) + moved_by(1))
+    for work in (scene.update, lambda: few.closest(many, threads=1), lambda: raylanes.SphereTree(many["origin"], 1),
+                 *(each.update for each in cubes)):
         assert any(turns_during(work) > 0 for _ in range(3))
 
 
