@@ -1,5 +1,5 @@
 """Draws the hours of sun on a midsummer day and the share of the sky in sight, on a terrain with 200 buildings in UTM
-coordinates: vertices of float64, so that nothing is rounded or shifted.
+coordinates: a scene of float64, so that nothing is rounded or shifted.
 
 usage: sun_hours.py FOLDER      writes sun_hours.png
 """
@@ -26,15 +26,18 @@ n = np.arange(200)
 places = np.stack([30 + n % 20 * 27.5, 60 + n // 20 * 50 + n * 7 % 11, 500 + 0 * n], axis=-1)
 column, row = (places[:, :2] // 4).astype(int).T
 sizes = np.stack([12 + n * 5 % 8, 14 + n * 3 % 17, z[row, column] - 485 + n * 29 % 23], axis=-1)
-buildings = (places[:, None] + box * sizes[:, None]).reshape(-1, 3)
-tree = raylanes.Bvh(np.concatenate([vertices, buildings]) + corner,
-                    np.concatenate([faces, (of_box + 8 * n[:, None, None]).reshape(-1, 3) + len(vertices)]))
+scene = raylanes.Scene()  # of float64, as the terrain is
+scene.place(scene.add(vertices + corner, faces))
+transforms = np.zeros((200, 3, 4))
+transforms[:, range(3), range(3)], transforms[:, :, 3] = sizes, places + corner
+scene.place(scene.add(box, of_box), transforms)
+scene.update()
 
 
 def in_sight(direction):
     """Whether nothing hides that direction. A ray leaves its own ground through the back, which does not count."""
     direction = np.round(1024 * direction)  # the same on each machine
-    return (normals @ direction > 0) & ~tree.occluded_towards(direction, ground, facing="front")
+    return (normals @ direction > 0) & ~scene.occluded_towards(direction, ground, facing="front")
 
 
 hours, sky = np.zeros(len(ground)), np.zeros(len(ground))
@@ -51,7 +54,8 @@ for k in range(64):  # by the cosine: what a horizontal surface receives of a gr
 figure, axes = panels("hours of sun on 21 June", "share of the sky in sight")
 for panel, value in zip(axes, (hours, sky)):
     drawn = panel.tripcolor(*(vertices + corner)[:, :2].T, faces, value, cmap="inferno", rasterized=True)
-    panel.add_collection(PolyCollection((buildings + corner).reshape(200, 8, 3)[:, 4:, :2], color="lightsteelblue"))
+    roofs = (places + corner)[:, None, :2] + box[4:, :2] * sizes[:, None, :2]
+    panel.add_collection(PolyCollection(roofs, color="lightsteelblue"))
     figure.colorbar(drawn, ax=panel, shrink=0.75)
     panel.margins(0)
 save(figure, "sun_hours.png", hours, sky)
