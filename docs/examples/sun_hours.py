@@ -28,7 +28,7 @@ column, row = (places[:, :2] // 4).astype(int).T
 sizes = np.stack([12 + n * 5 % 8, 14 + n * 3 % 17, z[row, column] - 485 + n * 29 % 23], axis=-1)
 scene = raylanes.Scene()  # of float64, as the terrain is
 scene.place(scene.add(vertices + corner, faces))
-transforms = np.zeros((200, 3, 4))
+transforms, roofs = np.zeros((200, 3, 4)), (places + corner)[:, None, :2] + box[4:, :2] * sizes[:, None, :2]
 transforms[:, range(3), range(3)], transforms[:, :, 3] = sizes, places + corner
 scene.place(scene.add(box, of_box), transforms)
 scene.update()
@@ -54,7 +54,6 @@ for k in range(64):  # by the cosine: what a horizontal surface receives of a gr
 figure, axes = panels("hours of sun on 21 June", "share of the sky in sight")
 for panel, value in zip(axes, (hours, sky)):
     drawn = panel.tripcolor(*(vertices + corner)[:, :2].T, faces, value, cmap="inferno", rasterized=True)
-    roofs = (places + corner)[:, None, :2] + box[4:, :2] * sizes[:, None, :2]
     panel.add_collection(PolyCollection(roofs, color="lightsteelblue"))
     figure.colorbar(drawn, ax=panel, shrink=0.75)
     panel.margins(0)
