@@ -121,6 +121,11 @@ class Scene(SceneQueries, ScenePoints, Places, Stored):
         ValueError
             If the tree has another dtype than the scene, or Bvh refuses the mesh.
 
+        Warns
+        -----
+        MeshWarning
+            As Bvh does, if the tree of a mesh is built at once.
+
         Examples
         --------
         >>> scene = raylanes.Scene()

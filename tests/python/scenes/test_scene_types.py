@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import raylanes
-from meshes import cube, cube_faces, cube_vertices, random_rays, supported
+from meshes import cube, cube_faces, cube_vertices, random_rays, supported, warnings_of
 from parts import far
 
 wide = np.float64
@@ -80,6 +80,14 @@ def test_meshes_are_converted_if_no_number_changes():
     with pytest.raises(ValueError, match="^vertices: float32 does not hold these float64 numbers; the scene has "
                        r"float32: Scene\(dtype=numpy.float32\) rounds them, Scene\(dtype=numpy.float64\) has float64$"):
         floats.add(cube_doubles / 3, cube_faces)
+
+
+def test_triangles_without_an_area():
+    flat = np.append(cube_faces, [[0, 0, 1]], axis=0)
+    warned = warnings_of(lambda: raylanes.Scene().add(cube_doubles, flat))
+    assert len(warned) == 1 and warned[0].startswith("1 of 13 triangles have two equal corners")
+    scene = scene_of((cube_doubles, flat))
+    assert scene.closest(rays).tobytes() == scene_of((cube_doubles, cube_faces)).closest(rays).tobytes()
 
 
 def test_before_the_first_geometry():
