@@ -164,22 +164,30 @@ TEST(CMemory, that_runs_out_in_scenes_is_a_status) {
   run_out_in_scenes<SceneD>(of_doubles, aimed_rays(of_doubles, 200, 15));
 }
 
-TEST(CMemory, is_not_taken_for_what_a_damaged_file_says) {
-  const Mesh mesh = ellipsoid(2, {0, 0, 0});
+// Loads files with a large number in the place of each of their first ones.
+template <class Kind>
+void expect_little_memory(const typename CallsOf<Kind>::Tree& object, std::size_t end) {
   std::ostringstream saved;
-  Bvh(mesh).save(saved);
-  for (std::size_t at = 32; at < 160; at += 4) {
+  object.save(saved);
+  for (std::size_t at = 32; at < end; at += 4) {
     std::string file = saved.str();
     const std::uint32_t many = 0x0fffffff;
     std::memcpy(file.data() + at, &many, sizeof many);
     EXPECT_FALSE(runs_out(unlimited, std::size_t{1} << 20, [&] {
-      raylanes_bvh* tree = nullptr;
-      const raylanes_status status = raylanes_bvh_load(&tree, file.data(), file.size());
-      EXPECT_EQ(tree, nullptr);
+      typename CallsOf<Kind>::Handle* loaded = nullptr;
+      const raylanes_status status = CallsOf<Kind>::load(&loaded, file.data(), file.size());
+      EXPECT_EQ(loaded, nullptr);
       if (status == RAYLANES_OUT_OF_MEMORY) throw std::bad_alloc();
       EXPECT_EQ(status, RAYLANES_BAD_FILE);
     })) << at;
   }
+}
+TEST(CMemory, is_not_taken_for_what_a_damaged_file_says) {
+  const DoubleMesh mesh = moved(ellipsoid(2, {0, 0, 0}), 1, {});
+  expect_little_memory<float>(Bvh(ellipsoid(2, {0, 0, 0})), 160);
+  SceneD scene;
+  scene.place(scene.add(mesh.vertices, mesh.triangles));
+  expect_little_memory<SceneD>(scene, 72);
 }
 
 // Options of an earlier version that end at a forbidden page.

@@ -130,6 +130,12 @@ TEST(ScenesOfDoubles, keep_their_common_tree) {
   std::size_t allocations = 0;
   while (runs_out(allocations, 64 * 1024, [&] { scene.update(); })) ASSERT_LT(++allocations, 200u);
   EXPECT_EQ(scene.bytes(), bytes);
+  // One that changes a part builds it again.
+  const DoubleMesh larger = moved(ellipsoid(4, {0, 0, 0}), 2, {});
+  const RayD ray{{0, 0, -9}, 0, {0, 0, 1}, HUGE_VAL};
+  const double t = scene.closest(ray).t;
+  scene.replace(0, BvhD(larger.vertices, larger.triangles)), scene.update();
+  EXPECT_NEAR(9 - scene.closest(ray).t, 2 * (9 - t), 1e-9);
 }
 
 TEST(ScenesOfDoubles, survive_memory_that_runs_out) {

@@ -157,6 +157,13 @@ TEST(ScenesOfDoubles, hide_triangles_by_masks_from_all_rays) {
   parts.scene.update();
   std::vector<RayD> rays = rays_to_parts(parts, by_level(30), 3, random);
   for (const RayD& ray : rays_on_lattice(random, by_level(30))) rays.push_back(ray);
+  // Rays that touch edges of the cube, where one of two triangles may be hidden.
+  for (std::size_t i = 0; i < 6; ++i) {
+    RayD& ray = rays.emplace_back(RayD{{}, 0, {}, HUGE_VAL});
+    const std::size_t x = i % 3, z = (i + 1) % 3;
+    ray.origin = {0.125, 0.125, 0.125}, ray.origin[x] = -3, ray.origin[z] = i < 3 ? -5 : 5;
+    ray.direction[x] = 1, ray.direction[z] = i < 3 ? 1 : -1;
+  }
   expect_every_query(parts, rays);
   PartsD outer;
   outer.add(soup(1)), outer.add(parts), outer.scene.place(1, turned_about_y), outer.scene.update();
@@ -194,8 +201,13 @@ TEST(SavedSceneOfDoubles, has_the_same_hits_and_the_same_bytes_again) {
   PartsD again = levels.whole;
   again.scene = loaded(file);
   EXPECT_EQ(saved(again.scene), file);
-  for (std::uint32_t i = 0; i < again.scene.instance_count(); ++i)
+  ASSERT_EQ(again.scene.instance_count(), levels.whole.scene.instance_count());
+  for (std::uint32_t i = 0; i < again.scene.instance_count(); ++i) {
     EXPECT_EQ(again.scene.levels_of(i), levels.whole.scene.levels_of(i));
+    EXPECT_EQ(again.scene.mask_of(i), levels.whole.scene.mask_of(i));
+    const TransformD saved_one = levels.whole.scene.transform_of(i), loaded_one = again.scene.transform_of(i);
+    EXPECT_TRUE(same_bytes(loaded_one, saved_one));
+  }
   again.scene.move(25, {}), again.scene.update();
   expect_every_query(again, rays_to_parts(again, by_level(25), 4, random));
   EXPECT_EQ(saved(loaded(saved(SceneD()))), saved(SceneD()));

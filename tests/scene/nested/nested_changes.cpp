@@ -2,6 +2,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <raylanes/scene_d.hpp>
+
 #include "../../support/message_of.hpp"
 #include "nested_cases.hpp"
 
@@ -179,14 +181,16 @@ TEST(NestedScene, has_spheres_and_primitives_of_the_callers) {
   EXPECT_THROW(whole.closest(ray, {.facing = Facing::front}), std::invalid_argument);
 }
 
-std::string saved(const Scene& scene) {
+template <class AnyScene>
+std::string saved(const AnyScene& scene) {
   std::ostringstream file;
   scene.save(file);
   return file.str();
 }
-Scene loaded(const std::string& bytes) {
+template <class AnyScene = Scene>
+AnyScene loaded(const std::string& bytes) {
   std::istringstream file(bytes);
-  return Scene::load(file);
+  return AnyScene::load(file);
 }
 
 TEST(NestedScene, is_saved_with_all_that_is_in_it) {
@@ -205,26 +209,34 @@ TEST(NestedScene, is_saved_with_all_that_is_in_it) {
   expect_leaves(nested, rays);
 }
 
-TEST(NestedScene, that_is_none_is_refused_whatever_its_checksum) {
-  Scene part, scene;
-  part.place(part.add(Bvh())), part.place(0, moved_by(1, 0, 0));
-  scene.place(scene.add(part), moved_by(0, 1, 0));
+template <class AnyScene>
+class NestedSceneFile : public ::testing::Test {};
+using Kinds = ::testing::Types<Scene, SceneD>;
+TYPED_TEST_SUITE(NestedSceneFile, Kinds);
+
+TYPED_TEST(NestedSceneFile, that_is_none_is_refused_whatever_its_checksum) {
+  constexpr bool is_of_floats = std::is_same_v<TypeParam, Scene>;
+  TypeParam part, scene;
+  const decltype(part.transform_of(0)) moved{{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  part.place(part.add(std::conditional_t<is_of_floats, Bvh, BvhD>())), part.place(0, moved);
+  scene.place(scene.add(part), moved);
   scene.place(2 - 1);
   const std::string file = saved(scene);
   constexpr std::size_t start = 32, header = 24, instances = start + header + 2 * 8,
-                        nested = instances + 4 * 56, nested_instances = nested + start + 16;
+                        record = 8 + sizeof moved, nested = instances + 4 * record,
+                        nested_instances = nested + start + 16, nested_record = 12 + sizeof moved;
   // Changes numbers at these places in the tables or, behind them, in the scene within.
   const auto refusal = [&](std::vector<std::pair<std::size_t, std::uint32_t>> numbers) {
     std::string damaged = file;
     for (const auto& [at, number] : numbers) std::memcpy(damaged.data() + at, &number, sizeof number);
     for (const auto& [begin, end] :
-         {std::pair{std::size_t{0}, nested}, {nested, nested_instances + 2 * 60}}) {
+         {std::pair{std::size_t{0}, nested}, {nested, nested_instances + 2 * nested_record}}) {
       const std::uint64_t checksum = XXH3_64bits(damaged.data() + begin + start, end - begin - start);
       std::memcpy(damaged.data() + begin + 24, &checksum, sizeof checksum);
     }
-    return message_of<std::runtime_error>([&] { loaded(damaged); });
+    return message_of<std::runtime_error>([&] { loaded<TypeParam>(damaged); });
   };
-  const auto instance = [](std::size_t i) { return instances + i * 56; };
+  const auto instance = [](std::size_t i) { return instances + i * record; };
   expect_words(refusal({{instance(0) + 8, 1}}),
                {"instance 1", "not where"});  // the first number of its transform
   expect_words(refusal({{instance(2) + 4, 7}}), {"instance 2", "not where"});
@@ -235,9 +247,12 @@ TEST(NestedScene, that_is_none_is_refused_whatever_its_checksum) {
   expect_words(refusal({{nested + start + 8, 3000}}), {"ends"});
   expect_words(refusal({{nested_instances, 1}}), {"geometry 1"});
   expect_words(refusal({{nested_instances + 8, 0}}), {"placed by instance 0"});
-  expect_words(refusal({{nested_instances + 60 + 8, 0}}), {"placed by instance 0"});
+  expect_words(refusal({{nested_instances + nested_record + 8, 0}}), {"placed by instance 0"});
+  if (!is_of_floats) {
+    expect_words(refusal({{start + header, 1}}), {"kind 1"});
+  }
   EXPECT_EQ(message_of<std::runtime_error>([&] {
-              loaded(file);
+              loaded<TypeParam>(file);
               throw std::runtime_error("good");
             }),
             "good");
