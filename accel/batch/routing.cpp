@@ -198,6 +198,17 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
   }
 }
 
+// Where rays of a batch are occluded; its scratch has a byte a ray more than rows ask for.
+void run_for_parts(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch,
+                   TreeReference* parts) {
+  batch.occluded = static_cast<std::uint8_t*>(batch.scratch) + scratch_bytes(choice, batch.size);
+  batch.found_at = parts;
+  std::fill_n(parts, batch.size, tree.root);
+  run(tree, choice, batch);
+  for (std::size_t i = 0; i < batch.size; ++i)
+    if (batch.occluded[i] == 0) parts[i] = empty_reference;
+}
+
 // Whether most visits of rays are in boxes that most rays visit.
 bool are_mostly_shared(double shared_visits) {
   return shared_visits > 0.23;
@@ -218,23 +229,30 @@ bool has_flights(const Path& path) {
 template <class Sink>
 void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,
            int threads) {
+  using Answer = typename Sink::Answer;
+  constexpr bool finds_parts = std::is_same_v<Answer, TreeReference>;
   choice.end = rays.shared_end();
   BatchPlan plan{threads, choice.counters};
   plan.progress = choice.progress, plan.fixed_parts = choice.fixed_parts;
   if (rays.segments != nullptr && rays.segments->is_direction) plan.max_call = max_parallel_call;
   over_calls(
-      plan, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n); },
-      [&](const RayCall<typename Sink::Answer>& call) {
+      plan, rays, sink,
+      [&](std::size_t n) { return scratch_bytes(choice, n) + (finds_parts ? n : 0); },
+      [&](const RayCall<Answer>& call) {
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
         batch.counters = call.counters, batch.scratch = call.scratch;
         batch.facing = choice.facing, batch.skip = call.skip, batch.by_rule = choice.by_rule;
-        set_answers(batch, call.answers);
+        if constexpr (finds_parts)
+          return run_for_parts(tree, choice, batch, call.answers);
+        else
+          set_answers(batch, call.answers);
         run(tree, choice, batch);
       });
 }
 template void trace(const TreeView&, TraversalChoice, const RaySource&, const HitSink<Hit>&, int);
 template void trace(const TreeView&, TraversalChoice, const RaySource&, const SpanSink<std::uint8_t>&, int);
+template void trace(const TreeView&, TraversalChoice, const RaySource&, const SpanSink<TreeReference>&, int);
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;

@@ -34,7 +34,8 @@ bool do_rays_wait(double shared_visits, std::size_t bytes);
 bool has_flights(const Path& path);
 
 // `threads` is as in TraceOptions and not negative; there are as many answers as rays.
-// Sinks are HitSink<Hit> and SpanSink<std::uint8_t>.
+// Sinks are HitSink<Hit>, SpanSink<std::uint8_t>, and SpanSink<TreeReference>: where in the tree something is hit, as
+// TraceBatch::found_at says; empty_reference: nothing is.
 template <class Sink>
 void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,
            int threads);

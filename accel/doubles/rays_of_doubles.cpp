@@ -85,23 +85,22 @@ class RayDoor<BvhD> {
 
   static void require_order(const TraceOptionsD&) {}
   TreeLists<double, DoubleTreeView> lists(const TraceOptionsD&) const { return {view_of(tree_)}; }
-  KeptCalls<DoubleTreeView, double> kept_at_once() const {
+  using KeptOfTree = KeptCalls<DoubleTreeView, double>;
+  KeptOfTree kept_at_once() const {
     if (!is_quick()) return {};
     return {&in_use().kept, &tree_->ready};
   }
   HitD closest_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
                     const TraceOptionsD& options) const {
-    const DoubleRayKernels& kernels = checked_kernels(options);
-    const KeptCall<double> call(rejection, options);
-    const QuietFloats quiet;
-    return kernels.kept.closest(masked(view_of(tree_), options), ray, call.asked);
+    return asking<HitD>(rejection, options, [&](const KeptOfTree& kept, const AskedOf<double>& asked) {
+      return kept.closest(ray, asked);
+    });
   }
   bool any_kept(const RayD& ray, const detail::Rejection<HitD>& rejection,
                 const TraceOptionsD& options) const {
-    const DoubleRayKernels& kernels = checked_kernels(options);
-    const KeptCall<double> call(rejection, options);
-    const QuietFloats quiet;
-    return kernels.kept.any(masked(view_of(tree_), options), ray, call.asked);
+    return asking<bool>(rejection, options, [&](const KeptOfTree& kept, const AskedOf<double>& asked) {
+      return kept.any(ray, asked);
+    });
   }
 
   detail::KernelsOfCalls<BvhD> kernels_of_calls(const TraceOptionsD& options) const {
@@ -114,6 +113,17 @@ class RayDoor<BvhD> {
   // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
   bool is_quick() const { return tree_ != nullptr && !QuietFloats::are_wanted(); }
   static const DoubleRayKernels& in_use() { return kernels_of(path_in_use()).doubles; }
+  // Without masks there is no copy of the tree, whose vectors would wait for its stores.
+  template <class Answer, class Call>
+  Answer asking(const detail::Rejection<HitD>& rejection, const TraceOptionsD& options,
+              const Call& call) const {
+    const auto* const row = &checked_kernels(options).kept;
+    const KeptCall<double> kept(rejection, options);
+    const QuietFloats quiet;
+    if (tree_ != nullptr && options.masks.empty()) return call(KeptOfTree{row, &tree_->ready}, kept.asked);
+    const DoubleTreeView tree = masked(view_of(tree_), options);
+    return call(KeptOfTree{row, &tree}, kept.asked);
+  }
   void trace_one(const RayD& ray, const TraceOptionsD& options, DoubleBatch& batch,
                  decltype(DoubleRayKernels::any) DoubleRayKernels::*row) const {
     const DoubleRayKernels& kernels = checked_kernels(options);

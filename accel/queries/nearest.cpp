@@ -9,6 +9,7 @@
 #include "../../dispatch/table/queries.hpp"
 #include "../../dispatch/table/traversal.hpp"
 #include "answers/ray_answers.hpp"
+#include "filters/found_parts.hpp"
 #include "traced_tree.hpp"
 
 namespace raylanes {
@@ -162,6 +163,29 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
   return traversal;
 }
 
+void find_parts(const TracedTree& tree, const RaySource& rays, std::span<TreeReference> parts,
+                const TraceOptions& options) {
+  Traversal traversal = checked_traversal(tree, options);
+  traversal.choice.facing = rays.sides(options.facing);
+  trace(traversal.tree, traversal.choice, rays, SpanSink<TreeReference>{parts}, options.threads);
+}
+void hits_in_parts(const TracedTree& tree, const RaySource& rays, std::span<const TreeReference> parts,
+                   std::span<const std::size_t> some, std::span<Hit> hits, const TraceOptions& options) {
+  const TreeView all = checked_traversal(tree, options).tree;
+  const auto& kept = kernels_of(checked_path(options.path)).queries.plain.kept;
+  const auto find = [&](std::size_t begin, std::size_t end) {
+    TreeView part = all;
+    AskedOf<float> asked;
+    asked.facing = rays.sides(options.facing), asked.any = true;
+    for (std::size_t k = begin; k < end; ++k) {
+      part.root = parts[some[k]];
+      if (options.skip.first != nullptr) asked.skipped = options.skip[some[k]];
+      hits[k] = kept.closest(part, rays[some[k]], asked);
+    }
+  };
+  in_parallel(some.size(), grain_of(some.size(), options.threads, 8, 64), options.threads, find);
+}
+
 namespace {
 
 // A tree's kernels of calls with one ray, by options.
@@ -242,10 +266,20 @@ class RayDoor<TriangleTree> {
     raylanes::trace(traversal.tree, traversal.choice, call.rays, SpanSink<std::uint8_t>{occluded},
                     options.threads);
   }
+  bool find_parts(const RaySource& rays, std::span<TreeReference> parts, const TraceOptions& options) const {
+    raylanes::find_parts(TreeAccess::traced(tree_), rays, parts, options);
+    return true;
+  }
+  void hits_in_parts(const RaySource& rays, std::span<const TreeReference> parts,
+                     std::span<const std::size_t> some, std::span<Hit> hits,
+                     const TraceOptions& options) const {
+    raylanes::hits_in_parts(TreeAccess::traced(tree_), rays, parts, some, hits, options);
+  }
 
   static void require_order(const TraceOptions& options) { require_exact(options); }
   TreeLists<float, TracedTree> lists(const TraceOptions&) const { return {TreeAccess::traced(tree_)}; }
-  KeptCalls<TreeView, float> kept_at_once() const {
+  using KeptOfTree = KeptCalls<TreeView, float>;
+  KeptOfTree kept_at_once() const {
     return {is_quick() ? &kernels_of(path_in_use()).queries.plain.kept : nullptr, ready_};
   }
   Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection,
@@ -254,18 +288,16 @@ class RayDoor<TriangleTree> {
     if (options.counters != nullptr)
       return first_kept(rejection, options,
                         [&](const TraceOptions& next) { return tree_.closest(ray, next); });
-    const TreeView tree = tree_by(options);
-    const KeptCall<float> call(rejection, options);
-    const QuietFloats quiet;
-    return kernels_of(checked_path(options.path)).queries.plain.kept.closest(tree, ray, call.asked);
+    return asking<Hit>(rejection, options, [&](const KeptOfTree& kept, const AskedOf<float>& asked) {
+      return kept.closest(ray, asked);
+    });
   }
   bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const TraceOptions& options) const {
     require_filterable(options);
     if (options.counters != nullptr) return static_cast<bool>(closest_kept(ray, rejection, options));
-    const TreeView tree = tree_by(options);
-    const KeptCall<float> call(rejection, options);
-    const QuietFloats quiet;
-    return kernels_of(checked_path(options.path)).queries.plain.kept.any(tree, ray, call.asked);
+    return asking<bool>(rejection, options, [&](const KeptOfTree& kept, const AskedOf<float>& asked) {
+      return kept.any(ray, asked);
+    });
   }
 
   detail::KernelsOfCalls<TriangleTree> kernels_of_calls(const TraceOptions& options) const {
@@ -278,10 +310,15 @@ class RayDoor<TriangleTree> {
  private:
   // Whether a call with one ray may go straight to the kernel: there is a tree, and nothing traps.
   bool is_quick() const { return ready_ != nullptr && !QuietFloats::are_wanted(); }
-  // The tree, if options are right. Usual ones need no rows of other kernels.
-  TreeView tree_by(const TraceOptions& options) const {
-    const TracedTree tree = TreeAccess::traced(tree_);
-    return is_usual_kept(options) ? tree.view : checked_traversal(tree, options).tree;
+  // Usual options need no rows of other kernels, and no copy of the tree, whose vectors would wait for its stores.
+  template <class Answer, class Call>
+  Answer asking(const detail::Rejection<Hit>& rejection, const TraceOptions& options, const Call& call) const {
+    const KeptCall<float> kept(rejection, options);
+    const auto* const row = &kernels_of(checked_path(options.path)).queries.plain.kept;
+    const QuietFloats quiet;
+    if (ready_ != nullptr && is_usual_kept(options)) return call(KeptOfTree{row, ready_}, kept.asked);
+    const TreeView tree = checked_traversal(TreeAccess::traced(tree_), options).tree;
+    return call(KeptOfTree{row, &tree}, kept.asked);
   }
   void trace_one(const Ray& ray, const TraceOptions& options, TraceBatch& batch,
                  decltype(&TraversalRow::any) row) const {

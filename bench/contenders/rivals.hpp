@@ -45,9 +45,14 @@ class EmbreeDoubles {
   std::unique_ptr<Scene> scene_;
 };
 
-// Whether a filter rejects a triangle: of any mesh `share` of 256, spread by a hash.
-inline bool is_rejected(std::uint32_t primitive, unsigned share) {
-  return (primitive * 2654435761u) >> 24 < share;
+// Whether a filter rejects a hit: the hits of `share` of 256 triangles, spread by a hash; or, by the share of_alpha, as
+// a texture would that cuts a leaf out of each pair of triangles.
+inline constexpr unsigned of_alpha = ~0u;
+inline bool is_rejected(const Hit& hit, unsigned share) {
+  if (share != of_alpha) return (hit.primitive * 2654435761u) >> 24 < share;
+  const bool is_first = hit.primitive % 2 == 0;
+  const float across = is_first ? hit.u + hit.v : hit.u, along = is_first ? hit.v : hit.u + hit.v;
+  return std::abs(across - 0.5f) > 0.5f * std::sqrt(along * (1 - along));
 }
 // Embree with filters, one ray a call.
 class EmbreeFilters {
@@ -62,6 +67,40 @@ class EmbreeFilters {
   // Whether each ray has a hit that is_rejected() does not reject: the nearest one is looked for, or any.
   void keep(std::span<const Ray> rays, bool only_decides, unsigned share,
             std::span<std::uint8_t> found) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+// A test of one's own: whether a ray meets a sphere, and where it enters or else leaves it.
+inline bool meets(const Sphere& sphere, const Ray& ray, Hit& hit) {
+  float squared = 0, along = 0, off_axis = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    squared += ray.direction[axis] * ray.direction[axis];
+    along += (sphere.centre[axis] - ray.origin[axis]) * ray.direction[axis];
+  }
+  const float middle = along / squared;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float x = sphere.centre[axis] - ray.origin[axis] - middle * ray.direction[axis];
+    off_axis += x * x;
+  }
+  const float free = sphere.radius * sphere.radius - off_axis;
+  if (!(free >= 0)) return false;
+  const float half = std::sqrt(free / squared), entry = middle - half;
+  hit = {entry >= ray.tmin ? entry : middle + half, 0, 0, 0};
+  return hit.t >= ray.tmin && hit.t <= ray.tmax;
+}
+// Embree with spheres: its sphere points, or user geometries with the test above. Spheres outlive it.
+class EmbreeSpheres {
+ public:
+  // Throws std::runtime_error where this build has no Embree, or Embree reports an error.
+  EmbreeSpheres(std::span<const Sphere> spheres, bool are_own);
+  ~EmbreeSpheres();
+
+  // One ray a call, or packets of 16.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits, bool in_packets) const;
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags, bool in_packets) const;
 
  private:
   struct Scene;

@@ -2,17 +2,32 @@
 
 #include "../contenders/rivals.hpp"
 #include "../support/oracles/exact_rays.hpp"
+#include "../support/oracles/exact_sphere.hpp"
+#include "../support/scenes/vector3.hpp"
 
 namespace raylanes::bench {
 namespace {
 
-// The shares of triangles that filters reject, in percent.
-constexpr unsigned rejected_percent[] = {0, 50, 90};
+// The shares of triangles that filters reject, in percent; or a filter that cuts leaves out of pairs of triangles.
+constexpr unsigned rejected_percent[] = {0, 50, 90, of_alpha};
 std::string kept_name(unsigned percent) {
-  return "kept, " + std::to_string(percent) + " % rejected";
+  return percent == of_alpha ? "kept, leaves cut out" : "kept, " + std::to_string(percent) + " % rejected";
 }
 unsigned share_of(unsigned percent) {
-  return 256 * percent / 100;
+  return percent == of_alpha ? of_alpha : 256 * percent / 100;
+}
+
+// A sphere for each triangle, at its centroid, as large as half of it.
+std::vector<Sphere> spheres_of(const Mesh& mesh) {
+  std::vector<Sphere> spheres;
+  for (const Index3& corners : mesh.triangles) {
+    Double3 v[3], centre{};
+    for (std::size_t k = 0; k < 3; ++k)
+      v[k] = to_double(mesh.vertices[corners[k]]), centre = add(centre, scale(v[k], 1.0 / 3));
+    const double area = length(cross(subtract(v[1], v[0]), subtract(v[2], v[0]))) / 2;
+    spheres.push_back({to_float(centre), static_cast<float>(std::sqrt(area / (2 * std::numbers::pi)))});
+  }
+  return spheres;
 }
 
 // A contender's work, and how many items ray i has after it.
@@ -56,7 +71,7 @@ class Race {
   // The nearest hit, or any for rays that ask for that, that a filter keeps: one ray a call, and as a batch.
   void add_kept(unsigned percent, const Path* path) {
     const unsigned share = share_of(percent);
-    const auto rejects = [=](const Hit& hit) { return is_rejected(hit.primitive, share); };
+    const auto rejects = [=](const Hit& hit) { return is_rejected(hit, share); };
     const HitFilter filter = [=](std::span<const std::size_t>, std::span<const Hit> hits,
                                  std::span<std::uint8_t> rejected) {
       for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = rejects(hits[k]) ? 1 : 0;
@@ -86,6 +101,44 @@ class Race {
     add({{kept_name(percent), name_, "embree filter", "best", rays_.size()},
          [=, this] { embree->keep(rays_, only_decides_, share_of(percent), *found); },
          [=](std::size_t i) { return std::size_t{(*found)[i]}; }});
+  }
+  // Spheres as the library has them, or as primitives of the caller's with a test of their own.
+  void add_spheres(bool are_own, const Path* path) {
+    const VisitOptions one{.path = path}, many{.path = path, .threads = options_.threads};
+    are_own ? add_both(
+                  are_own, path,
+                  [=, this](const Ray& ray) {
+                    return only_decides_ ? boxes().occluded(ray, test_, one)
+                                         : static_cast<bool>(boxes().closest(ray, test_, one));
+                  },
+                  [=, this](auto& found, auto& hits) {
+                    only_decides_ ? boxes().occluded(rays_, found, test_, many)
+                                  : boxes().closest(rays_, hits, test_, many);
+                  })
+            : add_both(
+                  are_own, path,
+                  [=, this](const Ray& ray) {
+                    return only_decides_ ? tree().occluded(ray, one)
+                                         : static_cast<bool>(tree().closest(ray, one));
+                  },
+                  [=, this](auto& found, auto& hits) {
+                    only_decides_ ? tree().occluded(rays_, found, many) : tree().closest(rays_, hits, many);
+                  });
+  }
+  void add_embree_spheres(bool are_own) {
+    const auto embree = std::make_shared<EmbreeSpheres>(spheres_, are_own);
+    for (const bool in_packets : {false, true}) {
+      if (in_packets && are_own) continue;  // tests of packets are other programs
+      const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
+      const auto hits = std::make_shared<std::vector<Hit>>(rays_.size());
+      add({{name_of(are_own), name_, in_packets ? "embree, packets of 16" : "embree", "best", rays_.size()},
+           [=, this] {
+             if (only_decides_) return embree->occluded(rays_, *found, in_packets);
+             embree->closest(rays_, *hits, in_packets);
+             for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
+           },
+           [=](std::size_t i) { return std::size_t{(*found)[i]}; }});
+    }
   }
   void add_embree() {
     const auto embree = std::make_shared<EmbreeFilters>(scene_.mesh, true);
@@ -137,6 +190,37 @@ class Race {
   static constexpr std::size_t none = ~std::size_t{0};
 
   void add(Work work) { works_.push_back(std::move(work)); }
+  static std::string name_of(bool are_own) { return are_own ? "own spheres" : "spheres"; }
+  const SphereTree& tree() {
+    if (!tree_) tree_.emplace(spheres_);
+    return *tree_;
+  }
+  const BoundedTree& boxes() {
+    if (boxes_) return *boxes_;
+    std::vector<Box> boxes;
+    for (const auto& [centre, radius] : spheres_) {
+      const auto moved = [&](float by) { return Float3{centre[0] + by, centre[1] + by, centre[2] + by}; };
+      boxes.push_back({moved(-radius), moved(radius)});
+    }
+    return boxes_.emplace(boxes);
+  }
+  template <class One, class Many>
+  void add_both(bool are_own, const Path* path, const One& one, const Many& many) {
+    const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
+    const auto hits = std::make_shared<std::vector<Hit>>(rays_.size());
+    const auto found_by = [=](std::size_t i) { return std::size_t{(*found)[i]}; };
+    add({{name_of(are_own), name_, "raylanes", path->name, rays_.size()},
+         [=, this] {
+           for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = one(rays_[i]) ? 1 : 0;
+         },
+         found_by});
+    add({{name_of(are_own), name_, "raylanes, a batch", path->name, rays_.size()},
+         [=, this] {
+           many(*found, *hits);
+           for (std::size_t i = 0; i < rays_.size() && !only_decides_; ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
+         },
+         found_by});
+  }
   // The number of works if there is none.
   std::size_t ours_of(const std::string& query) const {
     std::size_t ours = works_.size();
@@ -151,9 +235,10 @@ class Race {
     for (std::size_t i = 0; i < rays_.size(); i += step) {
       const std::size_t items = work.items_of(i);
       if (items == none) continue;
-      ++row.judged;
       std::vector<std::size_t>& known = known_[work.row.query];
       if (known.size() <= i / step) known.push_back(exact_items(work.row.query, rays_[i]));
+      if (known[i / step] == none) continue;
+      ++row.judged;
       row.wrong += known[i / step] == items ? 0 : 1;
     }
   }
@@ -162,14 +247,27 @@ class Race {
     const Mesh& mesh = scene_.mesh;
     const bool counts_crossings = query == "crossings" || query == "count";
     if (counts_crossings) return oracle::exact_crossings(mesh, ray).size();
+    if (query.ends_with("spheres")) return exact_spheres(ray);
     const std::vector<Hit> hits = oracle::exact_hits(mesh, ray);
     for (const unsigned percent : rejected_percent)
       if (query == kept_name(percent))
         return std::ranges::all_of(
-                   hits, [&](const Hit& hit) { return is_rejected(hit.primitive, share_of(percent)); })
+                   hits, [&](const Hit& hit) { return is_rejected(hit, share_of(percent)); })
                    ? 0
                    : 1;
     return hits.size();
+  }
+
+  // Whether the ray meets a sphere; `none` if floats may say otherwise.
+  std::size_t exact_spheres(const Ray& ray) const {
+    bool is_clear = true;
+    for (const auto& [centre, radius] : spheres_) {
+      const auto exact = oracle::exact_sphere(ray, {centre[0], centre[1], centre[2], radius * radius});
+      const bool is_near = std::abs(exact.free) <= 0x1p-18 * (exact.distance * exact.distance);
+      if (exact.hit && !is_near) return 1;
+      is_clear = is_clear && !is_near;
+    }
+    return is_clear ? 0 : none;
   }
 
   const Scene& scene_;
@@ -178,6 +276,16 @@ class Race {
   const bool only_decides_;
   std::string name_;
   const QueryOptions& options_;
+  const std::vector<Sphere> spheres_ = spheres_of(scene_.mesh);
+  struct OwnTest {
+    const std::vector<Sphere>& spheres;
+    bool operator()(std::uint32_t primitive, const Ray& ray, Hit& hit) const {
+      return meets(spheres[primitive], ray, hit);
+    }
+  };
+  OwnTest test_{spheres_};
+  std::optional<SphereTree> tree_;
+  std::optional<BoundedTree> boxes_;
   std::vector<Work> works_;
   std::map<std::string, std::vector<std::size_t>> known_;  // items of judged rays, by query
 };
@@ -192,15 +300,21 @@ std::vector<QueryRow> query_rows(const Scene& scene, const QueryOptions& options
     const RaySet set = workload.rays(kind);
     if (set.rays.empty()) continue;
     Race race(scene, bvh, set, options);
-    const bool lists = std::ranges::any_of(options.queries, [](ListQuery q) { return q != ListQuery::kept; });
+    const auto makes_lists = [](ListQuery query) { return query < ListQuery::kept; };
+    const bool lists = std::ranges::any_of(options.queries, makes_lists);
     for (const ListQuery query : options.queries)
       for (const Path* path : options.paths)
-        if (query != ListQuery::kept) race.add_ours(query, path);
+        if (makes_lists(query)) race.add_ours(query, path);
     if (options.against_embree && lists) race.add_embree();
     for (const unsigned percent : rejected_percent) {
       if (!std::ranges::count(options.queries, ListQuery::kept)) break;
       for (const Path* path : options.paths) race.add_kept(percent, path);
       if (options.against_embree) race.add_embree_kept(percent);
+    }
+    for (const ListQuery query : {ListQuery::spheres, ListQuery::own}) {
+      if (!std::ranges::count(options.queries, query)) continue;
+      for (const Path* path : options.paths) race.add_spheres(query == ListQuery::own, path);
+      if (options.against_embree) race.add_embree_spheres(query == ListQuery::own);
     }
     // Its rays have no end.
     if (options.against_cgal && std::isinf(set.rays[0].tmax)) race.add_cgal();

@@ -1,4 +1,5 @@
-// All hits and crossings of a ray set by us, and the same work by Embree and CGAL in the same rounds.
+// All hits and crossings of a ray set by us, hits that filters keep, and spheres, by the library and by a test of one's
+// own; the same work by Embree and CGAL in the same rounds.
 #pragma once
 
 #include <raylanes/paths.hpp>
@@ -8,8 +9,9 @@
 
 namespace raylanes::bench {
 
-enum class ListQuery : std::uint8_t { all, crossings, count, kept };
-inline constexpr std::array<std::string_view, 4> list_query_names{"all", "crossings", "count", "kept"};
+enum class ListQuery : std::uint8_t { all, crossings, count, kept, spheres, own };
+inline constexpr std::array<std::string_view, 6> list_query_names{"all",  "crossings", "count",
+                                                                  "kept", "spheres",   "own"};
 
 // One contender on one ray set. CGAL has a part of the rays only, as many as it counts in some time.
 struct QueryRow {

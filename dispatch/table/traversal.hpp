@@ -64,6 +64,8 @@ struct TraceBatchOf {
   std::size_t size = 0;
   HitOf<T>* hits = nullptr;          // of `closest`
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
+  // And of each ray that is occluded, if not null: the root, or a node or leaf at which something is hit as a rule.
+  TreeReference* found_at = nullptr;
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;
   // For packets: what their rays share. Those that do not cost more time.
@@ -83,6 +85,7 @@ struct TraceBatchOf {
     some.rays += first, some.size = count;
     if (hits != nullptr) some.hits += first;
     if (occluded != nullptr) some.occluded += first;
+    if (found_at != nullptr) some.found_at += first;
     if (skip != nullptr) some.skip += first;
     if (after != nullptr) some.after += first;
     return some;

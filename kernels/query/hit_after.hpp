@@ -59,10 +59,14 @@ inline Hit kept_by(const TreeView& tree, const AskingRay& of, Counters& counters
 
 template <bool first_one, class Counters>
 inline Hit kept_hit(const TreeView& tree, const Ray& ray, const AskedOf<float>& asked, Counters& counters) {
-  Ray rest = ray;
-  rest.tmin = begin_after(asked.after, ray.tmin);
-  if (tree.root == empty_reference || !(rest.tmin <= rest.tmax)) return {};
-  return kept_by<first_one>(tree, {ray, rest, asked}, counters);
+  Ray behind;
+  const Ray* rest = &ray;  // where it lies, as a copy that is read as vectors waits for its stores
+  if (asked.after != nullptr) [[unlikely]] {
+    behind = ray, behind.tmin = begin_after(asked.after, ray.tmin);
+    rest = &behind;
+  }
+  if (tree.root == empty_reference || !(rest->tmin <= rest->tmax)) return {};
+  return kept_by<first_one>(tree, {ray, *rest, asked}, counters);
 }
 
 [[gnu::noinline, gnu::flatten]] Hit closest_kept(const TreeView& tree, const Ray& ray,

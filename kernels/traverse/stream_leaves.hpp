@@ -143,6 +143,7 @@ class StreamLeaves
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
     const int triangles = leaf_size(leaf);
     counters().leaf();
+    at_ = leaf;
     const auto screen = screen_of(block, triangles);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
       test_triangles(block, screen, triangles, leaf, list + i, size - i);
@@ -150,6 +151,7 @@ class StreamLeaves
 
   [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
                                                     std::uint32_t size) {
+    at_ = from;
     this->each_single(
         from, list, size,
         [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, Counters& cost) {
@@ -194,6 +196,8 @@ class StreamLeaves
   void end_ray(std::uint32_t i) {
     rays_.rows[i].tmax = ended;
     batch_.occluded[rays_.number[i]] = 1;
+    if (batch_.found_at != nullptr) [[unlikely]]
+      batch_.found_at[rays_.number[i]] = at_;
   }
 
   Candidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
@@ -343,6 +347,7 @@ class StreamLeaves
   }
 
   const TraceBatch& batch_;
+  TreeReference at_ = empty_reference;  // the node or leaf whose rays are tested
 };
 
 }  // namespace

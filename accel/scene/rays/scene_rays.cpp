@@ -5,6 +5,7 @@
 #include "../../../dispatch/table/queries.hpp"
 #include "../../../dispatch/table/traversal.hpp"
 #include "../../queries/answers/ray_answers.hpp"
+#include "../../queries/filters/found_parts.hpp"
 #include "../../queries/traced_tree.hpp"
 #include "../reach.hpp"
 #include "kept_in_scene.hpp"
@@ -67,9 +68,10 @@ SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ra
   SceneHit hit;
   for (const auto& tree : scene.commons) {
     if (!scene.sees(*tree, mask)) continue;
-    Ray rest = ray;
-    if (hit && tmax_after(hit.t) < ray.tmax) rest.tmax = tmax_after(hit.t);
-    const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, rest);
+    Ray shorter;
+    const Ray* rest = &ray;  // a copy that is read as vectors waits for its stores
+    if (hit && tmax_after(hit.t) < ray.tmax) shorter = ray, shorter.tmax = tmax_after(hit.t), rest = &shorter;
+    const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, *rest);
     if (is_before(next, hit)) hit = next;
   }
   for (const TopLevel& top : scene.tops)
@@ -133,6 +135,26 @@ class KernelsOfScene {
   const CommonTree* tree_;
   RowsOfCalls rows_;
   const Path* path_ = nullptr;
+};
+
+// A batch of a scene whose rays see no more than a common tree, as one of that tree.
+struct BatchOfCommon {
+  const CommonTree& tree;
+  std::vector<std::uint32_t> skips = {};  // by numbers of the tree
+  RaySource rays;
+  TraceOptions options;
+
+  BatchOfCommon(const CommonTree& of, const RaySource& in_scene, const TraceOptions& by)
+      : tree(of), rays(in_scene), options(by) {
+    if (by.skip.first == nullptr) return;
+    const MemberNumbers numbers = tree.numbers();
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      skips.push_back(rays.takes_part(i) ? numbers.of(by.skip.instance(i), by.skip[i]) : no_primitive);
+    rays.skip = options.skip = skips;
+  }
+  BatchOfCommon(const BatchOfCommon&) = delete;
+  BatchOfCommon& operator=(const BatchOfCommon&) = delete;
+  TracedTree traced() const { return TreeAccess::traced(*tree.geometry->triangles()); }
 };
 
 // Lists of hits where a common tree has all that the mask sees.
@@ -222,6 +244,25 @@ class RayDoor<Scene> {
     SceneQuery query = checked_query(parts_, call.options);
     query.choice.facing = rays.sides(options.facing);
     trace_all(query, call.rays, SpanSink<std::uint8_t>{occluded}, options.threads);
+  }
+
+  // False if rays see more than one tree: these have no common parts.
+  bool find_parts(const RaySource& rays, std::span<TreeReference> parts, const TraceOptions& options) const {
+    checked_query(parts_, options);
+    const CommonTree* const tree = quick_tree(parts_, options.mask);
+    if (tree == nullptr) return false;
+    const BatchOfCommon batch(*tree, rays, options);
+    raylanes::find_parts(batch.traced(), batch.rays, parts, batch.options);
+    return true;
+  }
+  void hits_in_parts(const RaySource& rays, std::span<const TreeReference> parts,
+                     std::span<const std::size_t> some, std::span<SceneHit> hits,
+                     const TraceOptions& options) const {
+    const BatchOfCommon batch(*quick_tree(parts_, options.mask), rays, options);
+    std::vector<Hit> in_tree(hits.size());
+    raylanes::hits_in_parts(batch.traced(), batch.rays, parts, some, in_tree, batch.options);
+    const MemberNumbers numbers = batch.tree.numbers();
+    std::ranges::transform(in_tree, hits.begin(), [&](const Hit& hit) { return numbers.owners.spread(hit); });
   }
 
   static void require_order(const TraceOptions& options) { require_exact_in_scene(options); }

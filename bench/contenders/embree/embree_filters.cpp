@@ -30,7 +30,9 @@ struct Keeping : RTCIntersectContext {
 };
 void keep_some(const RTCFilterFunctionNArguments* a) {
   const auto* hit = reinterpret_cast<const RTCHit*>(a->hit);
-  if (is_rejected(hit->primID, static_cast<Keeping*>(a->context)->share)) a->valid[0] = 0;
+  const float t = reinterpret_cast<const RTCRay*>(a->ray)->tfar;
+  if (is_rejected({t, hit->u, hit->v, hit->primID}, static_cast<Keeping*>(a->context)->share))
+    a->valid[0] = 0;
 }
 
 }  // namespace

@@ -64,6 +64,19 @@ void EmbreePoints::closest(std::span<const Float3>, std::span<double>) const {
   refuse();
 }
 
+struct EmbreeSpheres::Scene {};
+
+EmbreeSpheres::EmbreeSpheres(std::span<const Sphere>, bool) {
+  refuse();
+}
+EmbreeSpheres::~EmbreeSpheres() = default;
+void EmbreeSpheres::closest(std::span<const Ray>, std::span<Hit>, bool) const {
+  refuse();
+}
+void EmbreeSpheres::occluded(std::span<const Ray>, std::span<std::uint8_t>, bool) const {
+  refuse();
+}
+
 struct EmbreeFilters::Scene {};
 
 EmbreeFilters::EmbreeFilters(const Mesh&, bool) {

@@ -74,12 +74,37 @@ Scene make_fractal() {
   return scene;
 }
 
+// The crown of a tree: leaves around boughs, each a square of two triangles, of which a filter may cut a leaf.
+Scene make_foliage() {
+  constexpr std::size_t leaves = 50000, of_bough = 500;
+  Scene scene{"foliage", {}, {{0, 0.3f, 4}, {0, 0, 0}, {0, 1, 0}, 45}};
+  SplitMix random(7);
+  const auto in_ball = [&](double least) {
+    for (;;) {
+      const Double3 p{2 * random.uniform() - 1, 2 * random.uniform() - 1, 2 * random.uniform() - 1};
+      if (const double squared = dot(p, p); squared <= 1 && squared >= least * least) return p;
+    }
+  };
+  Double3 bough{};
+  for (std::size_t i = 0; i < leaves; ++i) {
+    if (i % of_bough == 0) bough = in_ball(0.5);
+    const Double3 at = add(bough, scale(in_ball(0), 0.3)), along = scale(normalized(in_ball(0.1)), 0.05),
+                  beside = scale(normalized(cross(along, in_ball(0.1))), 0.03), end = add(at, along);
+    const auto first = static_cast<std::uint32_t>(scene.mesh.vertices.size());
+    for (const Double3& p : {at, add(at, beside), add(end, beside), end})
+      scene.mesh.vertices.push_back(to_float(p));
+    scene.mesh.triangles.insert(scene.mesh.triangles.end(),
+                                {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+  }
+  return scene;
+}
+
 struct Entry {
   std::string_view name;
   Scene (*make)();
 };
 constexpr std::array entries{Entry{"spheres", make_spheres}, Entry{"hall", make_hall_scene},
-                             Entry{"fractal", make_fractal}};
+                             Entry{"fractal", make_fractal}, Entry{"foliage", make_foliage}};
 
 }  // namespace
 

@@ -11,7 +11,7 @@ FAULTS = {
     INPUT: [("range.obj 4", "trace range.obj"), ("mesh.xyz .obj", "trace mesh.xyz"),
         ("missing.obj", "trace missing.obj"), ("hostile.obj", "trace hostile.obj"),
         ("isa.json", "report --summary nowhere")],
-    USAGE: [("sphere spheres hall fractal", "trace sphere"), ("sse3 scalar", "trace flat.obj --path sse3"),
+    USAGE: [("sphere spheres hall fractal foliage", "trace sphere"), ("sse3 scalar", "trace flat.obj --path sse3"),
         ("no path avx2", "trace hall --path "), ("primary shadow diffuse", "trace hall --rays secondary"),
         ("--rays primary", "trace hall --rays "), ("watertight moller_trumbore", "trace hall --test exactly"),
         ("reproducible fast", "trace hall --grade best"), ("--mode packet", "trace hall --mode "),

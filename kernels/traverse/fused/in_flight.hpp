@@ -153,8 +153,11 @@ struct FlyingRays {
   void prefetch(TreeReference next) const { raylanes::prefetch<Test>(tree, next); }
   bool visit(Search& search, TreeReference leaf) const { return search.leaves.visit(leaf, search.query); }
   void restart(Search& search, std::size_t i) const { walk_usual<Test>(tree, batch.rays[i], search.query); }
-  void finish(Search& search, std::size_t i, bool has_ended) const {
-    walk_rest<Test>(tree, batch.rays[i], search.query, has_ended);
+  template <class Flight>
+  void finish(Flight& flight, std::size_t i, bool has_ended) const {
+    walk_rest<Test>(tree, batch.rays[i], flight.query, has_ended);
+    if constexpr (Query::only_decides)
+      if (has_ended && batch.found_at != nullptr) batch.found_at[i] = flight.next;
   }
 
  private:

@@ -75,6 +75,9 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     });
     if constexpr (settles_undecided)
       if (with_undecided_ != 0) hit |= settle_undecided(leaf);
+    if constexpr (only_decides)
+      if (batch_.found_at != nullptr) [[unlikely]]
+        note(hit, at.reference);
     this->refresh(hit);
   }
   // For any hit few nodes are left: the walk of single rays, out of line, gains nothing there.
@@ -87,7 +90,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
       if constexpr (only_decides) {
         AnyHit query(ray);
         raylanes::trace<Test>(below, ray, prepare_for_nodes<Test>(ray, tree_.bounds), query, cost);
-        if (query.found) rays_.active[row] &= ~(1u << lane);
+        if (query.found) end_ray(row, lane, below.root);
       } else {
         auto query = rays_.query(row, lane);
         WalksNodes::walk<Test>(below, ray, query, cost);
@@ -105,6 +108,20 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     TreeReference reference;
   };
 
+  void end_ray(int row, int lane, TreeReference at) {
+    rays_.active[row] &= ~(1u << lane);
+    if (batch_.found_at != nullptr) batch_.found_at[rays_.index(row, lane)] = at;
+  }
+  // Where rays of these vectors have ended.
+  [[gnu::noinline]] void note(std::uint32_t vectors, TreeReference at) {
+    for (; vectors != 0; vectors &= vectors - 1) {
+      const int row = std::countr_zero(vectors);
+      for (std::uint32_t left = rays_.occupied[row] & ~rays_.active[row]; left != 0; left &= left - 1) {
+        TreeReference& found_at = batch_.found_at[rays_.index(row, std::countr_zero(left))];
+        if (found_at == tree_.root) found_at = at;
+      }
+    }
+  }
   // The plain triangles to whose front rays come: those that end at the apex come from the other side.
   static std::uint32_t front_of(const Triangles& triangles) {
     return apex == SharedApex::end ? triangles.away : ~triangles.away;
@@ -128,7 +145,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     const Ray& ray = ray_of(row, lane);
     const std::uint32_t skipped = batch_.skip != nullptr ? rays_.skipped[row][lane] : no_primitive;
     if constexpr (only_decides) {
-      if (batch_.by_rule->any(below, ray, batch_.facing, skipped)) rays_.active[row] &= ~(1u << lane);
+      if (batch_.by_rule->any(below, ray, batch_.facing, skipped)) end_ray(row, lane, below.root);
     } else {
       const Candidate so_far = rays_.query(row, lane);
       NearestSoFar best{so_far.t_lo, so_far.tmax, so_far.leaf_triangle};

@@ -280,7 +280,7 @@ TYPED_TEST(EveryQuery, of_shadows_and_filters) {
 // A filter that is asked about some triangles alone is that filter with an answer for the others.
 TYPED_TEST(EveryQuery, asks_filters_about_some_triangles) {
   using T = TypeParam;
-  const World<T> world = std::move(worlds<T>(this->rays(180))[0]);
+  const World<T> world = std::move(worlds<T>(this->rays(360))[0]);
   const std::vector<std::uint32_t> masks = some_masks(world.mesh.triangles.size());
   constexpr std::uint32_t asking = 2;
   const auto is_asked = [&](const HitOf<T>& hit) {

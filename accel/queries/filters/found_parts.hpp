@@ -1,0 +1,17 @@
+// Any hit of each ray of a batch, for a filter to be asked about: where in a tree one is, by the traversals that only
+// decide, then its numbers.
+#pragma once
+
+#include "../traced_tree.hpp"
+
+namespace raylanes {
+
+// Finds for each ray a part of the tree in which something is hit as a rule: empty_reference, if nothing is hit at all.
+// parts[i] is left as it is if ray i takes no part. Options are checked as those of a batch.
+void find_parts(const TracedTree& tree, const RaySource& rays, std::span<TreeReference> parts,
+                const TraceOptions& options);
+// Finds a hit of each ray some[k] in its part of the tree; a miss, if none is there. skip: of all rays.
+void hits_in_parts(const TracedTree& tree, const RaySource& rays, std::span<const TreeReference> parts,
+                   std::span<const std::size_t> some, std::span<Hit> hits, const TraceOptions& options);
+
+}  // namespace raylanes
