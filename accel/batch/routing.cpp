@@ -198,7 +198,7 @@ void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& 
   }
 }
 
-// Where rays of a batch are occluded; its scratch has a byte a ray more than rows ask for.
+// The parts of the tree in which rays of a batch are hit; its scratch has a byte a ray more than rows ask for.
 void run_for_parts(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch,
                    TreeReference* parts) {
   batch.occluded = static_cast<std::uint8_t*>(batch.scratch) + scratch_bytes(choice, batch.size);

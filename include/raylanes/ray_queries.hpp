@@ -89,13 +89,14 @@ class RayQueries {
   void closest(const Some& rays, Hits hits, const Asked& filter, const Options& options = {}) const {
     filtered_closest(rays, hits, filter, options);
   }
-  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0.
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0. The filter is
+  /// asked about the hits of a ray in no order, perhaps twice about one, until it keeps one.
   template <class Some, std::convertible_to<Filter> Asked>
   void occluded(const Some& rays, Occluded occluded, const Asked& filter, const Options& options = {}) const {
     filtered_occluded(rays, occluded, filter, options);
   }
   /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
-  /// The filter sees hits of the ray that begins at points[i], nearest to the point first.
+  /// The filter is asked as in occluded(), about hits of the ray that begins at points[i].
   template <std::convertible_to<Filter> Asked>
   void occluded_from(const Point& from, Points points, Occluded occluded, const Asked& filter,
                      const Ends& ends = {}, const Options& options = {}) const {

@@ -148,8 +148,10 @@ class RayQueries:
 
         Parameters
         ----------
-        rays, origins, directions, tmin, tmax, filter, out, test, grade, mode, hint, facing, threads, progress
+        rays, origins, directions, tmin, tmax, out, test, grade, mode, hint, facing, threads, progress
             As in closest().
+        filter : function, optional
+            As in closest(), but asked about the hits of a ray in no order, until it keeps one.
         skip, mask, masks, filter_mask
             As in closest().
         active : array of bool, optional
@@ -191,7 +193,7 @@ class RayQueries:
             The part of each segment to test, as shares of its length from `origin` on: all of it by default, both
             points included. A point on a surface leaves out its own triangle by `skip`.
         filter : function, optional
-            As in closest(); indices are rows of the flattened points, and t is 0 at the point and 1 at `origin`.
+            As in occluded(); indices are rows of the flattened points, and t is 0 at the point and 1 at `origin`.
         facing : {"any", "front", "back"}, default "any"
             Triangles to count, by the side that `origin` sees.
         out, test, grade, mode, hint, skip, mask, masks, filter_mask, threads, progress

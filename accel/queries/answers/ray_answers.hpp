@@ -5,8 +5,7 @@
 #include <raylanes/ray_queries.hpp>
 
 #include "../../batch/few_rays.hpp"
-#include "../../batch/triangle_masks.hpp"
-#include "../after.hpp"
+#include "../filters/filtered_call.hpp"
 
 namespace raylanes {
 
@@ -24,6 +23,9 @@ namespace raylanes {
 //                                            are_default: as are_defaults() of the options. Batches from batch_size()
 //                                            rays on are better traced as one, and so are FewRays that it does not take
 //   kept_at_once()                           KeptCalls by default options; may be missing
+// and where trees say in which part of them a ray is hit
+//   find_parts(rays, parts, options), hits_in_parts(rays, parts, some, hits, options)  as in filters/found_parts.hpp; false
+//                                            if there are no parts
 template <class Tree>
 class RayDoor;
 
@@ -137,161 +139,6 @@ bool RayQueries<Tree>::any_kept(const Ray& ray, const detail::Rejection<Hit>& re
   by.after = {};  // of closest() only
   return door.any_kept(ray, rejection, by);
 }
-
-// A batch whose hits a filter turns down. Hits after those turned down come from lists, where there are some.
-template <class Tree>
-class FilteredCall {
-  using Number = typename RayQueries<Tree>::Number;
-  using Hit = typename RayQueries<Tree>::Hit;
-  using Options = typename RayQueries<Tree>::Options;
-  using Source = RaySourceOf<Number>;
-
- public:
-  FilteredCall(const RayDoor<Tree>& door, const HitFilterOf<Hit>& filter, const Options& options)
-      : door_(door), filter_(filter), options_(options) {}
-
-  void closest(const Source& rays, const HitRecords<Hit>& hits) const {
-    const CheckedCall checked(door_.name, rays, hits, options_);
-    find(checked.rays, hits, filter_, checked.options);
-  }
-  void occluded(const Source& rays, std::span<std::uint8_t> occluded) const {
-    Options by = options_;
-    if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
-    const CheckedCall checked(door_.name, rays, occluded, by);
-    by = checked.options, by.after = {};  // of closest() only
-    if (!filter_) return door_.trace(checked.rays, occluded, by);
-    if (!counts(by) && !share_origin(checked.rays)) return decide(checked.rays, occluded, by);
-    std::vector<Hit> hits(rays.size());
-    find(checked.rays, hits, filter_, by);
-    for (std::size_t i = 0; i < hits.size(); ++i)
-      if (checked.rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
-  }
-
- private:
-  // Some rays of a batch, as a batch of their own.
-  struct Some {
-    const std::vector<std::size_t>& indices;
-    std::vector<RayOf<Number>> rays = {};
-    std::vector<SkippedPrimitive> skips = {};
-
-    Some(const Source& all, const PrimitiveView& skip, const std::vector<std::size_t>& numbers)
-        : indices(numbers), skips(skips_of(skip, numbers)) {
-      for (const std::size_t i : numbers) rays.push_back(all[i]);
-    }
-    Source source() const { return {.records = rays, .skip = skips}; }
-    Options options(Options by) const {
-      by.active = nullptr, by.progress = nullptr, by.skip = skips;
-      return by;
-    }
-  };
-
-  static bool counts(const Options& by) {
-    if constexpr (requires { by.counters; }) return by.counters != nullptr;
-    return false;
-  }
-  // Whether many rays seem to begin at one point: packets find their nearest hits sooner than each finds any hit.
-  static bool share_origin(const Source& rays) {
-    constexpr std::size_t looked_at = 64, least = 32;
-    std::size_t count = 0, first = 0;
-    for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(rays.size() / looked_at, 1)) {
-      if (!rays.takes_part(i)) continue;
-      if (count++ == 0) first = i;
-      if (rays[i].origin != rays[first].origin) return false;
-    }
-    return count >= least;
-  }
-  // Any hit comes first, and the filter is asked about that; then what hits the filter has rejected are searched for
-  // nearest hits.
-  void decide(const Source& rays, std::span<std::uint8_t> occluded, const Options& by) const {
-    door_.require_order(by);
-    std::vector<std::size_t> hit;
-    if (!keeps_any_hit(rays, occluded, by, hit)) {
-      door_.trace(rays, occluded, by);
-      for (std::size_t i = 0; i < rays.size(); ++i)
-        if (rays.takes_part(i) && occluded[i] != 0) hit.push_back(i);
-    }
-    const Some some(rays, by.skip, hit);
-    std::vector<Hit> hits(hit.size());
-    std::vector<std::size_t> in_batch;
-    const HitFilterOf<Hit> filter = [&](std::span<const std::size_t> indices, std::span<const Hit> found,
-                                        std::span<std::uint8_t> rejected) {
-      in_batch.clear();
-      for (const std::size_t k : indices) in_batch.push_back(hit[k]);
-      filter_(in_batch, found, rejected);
-    };
-    find(some.source(), hits, filter, some.options(by));
-    for (std::size_t k = 0; k < hit.size(); ++k) occluded[hit[k]] = hits[k] ? 1 : 0;
-  }
-  // Decides of rays by a hit of each, where trees say in which part of them one is. `open` are the others in the end:
-  // there is none in the part, or the filter rejects it. False, if there are no parts.
-  bool keeps_any_hit([[maybe_unused]] const Source& rays, [[maybe_unused]] std::span<std::uint8_t> occluded,
-                     [[maybe_unused]] const Options& by,
-                     [[maybe_unused]] std::vector<std::size_t>& open) const {
-    if constexpr (requires(std::span<TreeReference> found) { door_.find_parts(rays, found, by); }) {
-      std::vector<TreeReference> parts(rays.size());
-      if (!door_.find_parts(rays, parts, by)) return false;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!rays.takes_part(i)) continue;
-        occluded[i] = 0;
-        if (parts[i] != empty_reference) open.push_back(i);
-      }
-      std::vector<Hit> hits(open.size());
-      door_.hits_in_parts(rays, parts, open, hits, by);
-      ask_about(hits, open, occluded, by);
-      return true;
-    }
-    return false;
-  }
-  void ask_about(const std::vector<Hit>& hits, std::vector<std::size_t>& open,
-                 std::span<std::uint8_t> occluded, const Options& by) const {
-    const MayReject may_reject{masks_of(by)};
-    Asking<HitFilterOf<Hit>> ask{filter_};
-    std::vector<std::size_t> indices, left;
-    std::vector<Hit> found;
-    for (std::size_t k = 0; k < open.size();) {
-      for (indices.clear(), found.clear(); k < open.size() && indices.size() < hits_of_filter_calls; ++k) {
-        if (!hits[k])
-          left.push_back(open[k]);
-        else if (!may_reject(hits[k]))
-          occluded[open[k]] = 1;
-        else
-          indices.push_back(open[k]), found.push_back(hits[k]);
-      }
-      ask(indices, found);
-      for (std::size_t n = 0; n < indices.size(); ++n) {
-        occluded[indices[n]] = 1;
-        if (ask.rejected[n] != 0) left.push_back(indices[n]);
-      }
-    }
-    open.swap(left);
-  }
-
-  void find(const Source& rays, const HitRecords<Hit>& hits, const HitFilterOf<Hit>& filter,
-            const Options& by) const {
-    door_.require_order(by);
-    door_.trace(rays, hits, by);
-    const MayReject may_reject{masks_of(by)};
-    const auto lists = door_.lists(by);
-    if constexpr (!std::is_same_v<decltype(lists), const NoLists>)
-      if (filter && lists)
-        return replace_from_lists(rays, hits, filter, may_reject, lists.have_streams,
-                                  [&](const std::vector<RayOf<Number>>& some,
-                                      const std::vector<std::size_t>& indices, std::uint32_t most) {
-                                    const auto skips = skips_of(rays.skip, indices);
-                                    return lists(some, skips, most, by);
-                                  });
-    filter_hits<Number>(
-        rays, hits, filter, by,
-        [&](const std::vector<RayOf<Number>>& some, std::vector<Hit>& last, const Options& again) {
-          door_.trace({.records = some, .skip = again.skip}, last, again);
-        },
-        may_reject);
-  }
-
-  const RayDoor<Tree>& door_;
-  const HitFilterOf<Hit>& filter_;
-  const Options& options_;
-};
 
 template <class Tree>
 void RayQueries<Tree>::filtered_closest(Rays rays, Hits hits, const Filter& filter,

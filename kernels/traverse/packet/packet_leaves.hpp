@@ -112,7 +112,7 @@ class PacketLeaves : public PacketWalk<apex, Counters> {
     rays_.active[row] &= ~(1u << lane);
     if (batch_.found_at != nullptr) batch_.found_at[rays_.index(row, lane)] = at;
   }
-  // Where rays of these vectors have ended.
+  // Notes for rays of these vectors that they have ended there.
   [[gnu::noinline]] void note(std::uint32_t vectors, TreeReference at) {
     for (; vectors != 0; vectors &= vectors - 1) {
       const int row = std::countr_zero(vectors);

@@ -53,7 +53,8 @@ std::uint32_t layer_of(const AnyHit& hit) {
     return hit.primitive;
 }
 
-// A filter is asked about each hit once, in the order of the ray, up to the one that it keeps; calls hold a ray once.
+// A filter is asked about each hit once, in the order of the ray, up to the one that it keeps; for occlusion in no
+// order. Calls hold a ray once.
 template <class AnyHit, class Tree, class AnyRay, class Options, class Name = std::uint32_t>
 void expect_kept(const Tree& tree, const std::vector<AnyRay>& rays, const Case& of, Options options,
                  const std::vector<Name>& skip = {}) {
@@ -68,7 +69,9 @@ void expect_kept(const Tree& tree, const std::vector<AnyRay>& rays, const Case& 
     ++calls;
     for (std::size_t k = 0; k < some.size(); ++k) {
       const std::int64_t layer = layer_of(hits[k]);
-      wrong += (in_order && layer <= last[some[k]]) || call_of[some[k]] == calls || rejected[k] != 0 ? 1 : 0;
+      const bool was_kept = last[some[k]] == std::numeric_limits<std::int64_t>::max();
+      const bool is_late = in_order && layer <= last[some[k]];
+      wrong += was_kept || is_late || call_of[some[k]] == calls || rejected[k] != 0 ? 1 : 0;
       last[some[k]] = layer, call_of[some[k]] = calls;
       rejected[k] = of.keeps(some[k], layer_of(hits[k])) ? 0 : 1;
       if (rejected[k] == 0) last[some[k]] = std::numeric_limits<std::int64_t>::max();
