@@ -150,6 +150,21 @@ def calls_with_progress():
         yield lambda **how: tree.closest_points(points, **how)
         yield lambda **how: tree.signed_distances(points, **how)
         yield lambda **how: np.array(kind(vertices.astype(dtype), faces, **how).nbytes)
+    for dtype in (np.float32, np.float64):
+        scene = raylanes.Scene()
+        scene.place(scene.add(vertices.astype(dtype), faces), [np.eye(4), np.diag([1, 2, -1, 1])])
+        scene.update()
+        yield lambda **how: scene.closest(rays, **how)
+        yield lambda **how: scene.occluded(rays, **how)
+        yield lambda **how: scene.all_hits(rays, **how).items
+        yield lambda **how: scene.crossings(rays, **how).items
+        yield lambda **how: scene.stretches(rays, **how).items["entry"]
+        yield lambda **how: scene.count_crossings(rays, **how)
+        yield lambda **how: scene.locate(points, **how)
+        yield lambda **how: scene.winding_numbers(points, **how)
+        yield lambda **how: scene.closest_points(points, **how)
+        yield lambda **how: scene.signed_distances(points, **how)
+        yield lambda **how: scene.innermost_parts(points, **how).instance
 
 
 class Enough(Exception):

@@ -13,30 +13,39 @@ using ListCall = SceneListCall<double, SceneDQuery>;
 template <class Item>
 std::vector<FoundItem<Item>> items_of(const SceneDQuery& query, const std::vector<RayD>& rays,
                                       ListOptions options) {
-  options.active = nullptr, options.progress = nullptr;
   const SceneDParts& scene = query.scene;
+  ProgressInTrees progress(options.progress);
+  options.active = nullptr;
   std::vector<FoundItem<Item>> found;
   std::vector<std::uint32_t> all(rays.size());
   std::iota(all.begin(), all.end(), 0u);
-  for (const auto& tree : scene.commons)
-    if ((tree->mask & query.mask) != 0)
-      append_lists<Item>(found, tree->arrays().view(), tree->numbers(), all, rays, query.skip, options);
+  std::size_t rays_of_trees = all.size() * scene.commons.size();
   std::vector<std::vector<std::uint32_t>> of_instance(scene.instances.size());
-  for (const std::uint32_t i : all)
+  for (const std::uint32_t i : all) {
     each_instance_along(scene, query.mask, rays[i], [&](std::uint32_t instance) {
-      of_instance[instance].push_back(i);
+      of_instance[instance].push_back(i), ++rays_of_trees;
       return rays[i].tmax;
     });
+    if (i % 1024 == 1023) progress.tell_sometimes(0);
+  }
+  progress.expect(rays_of_trees);
+  for (const auto& tree : scene.commons) {
+    if ((tree->mask & query.mask) == 0) continue;
+    options.progress = progress.of_tree(all.size());
+    append_lists<Item>(found, tree->arrays().view(), tree->numbers(), all, rays, query.skip, options);
+  }
   std::vector<RayD> mapped;
   for (std::uint32_t number = 0; number < of_instance.size(); ++number) {
     if (of_instance[number].empty()) continue;
     const InstanceD& instance = scene.instances[number];
     options.masks = scene.masks_in(instance.geometry);
+    options.progress = progress.of_tree(of_instance[number].size());
     mapped.clear();
     for (const std::uint32_t i : of_instance[number]) mapped.push_back(in_part(instance, rays[i]));
     append_lists<Item>(found, scene.tree_of(instance)->view(), OneMember(number, instance.geometry).numbers(),
                        of_instance[number], mapped, query.skip, options);
   }
+  progress.finish();
   return found;
 }
 

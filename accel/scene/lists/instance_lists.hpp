@@ -16,21 +16,25 @@ class InstanceLists {
  public:
   // Rays of no direction are inactive. options.max_count is of each tree.
   InstanceLists(const SceneQuery& query, const std::vector<Ray>& rays, const ListOptions& options)
-      : query_(query), rays_(rays), options_(options) {
-    options_.active = nullptr, options_.progress = nullptr;
+      : query_(query), rays_(rays), options_(options), progress_(options.progress) {
+    options_.active = nullptr;
   }
 
   // The items of all rays. A ray's items of one instance are in order.
   std::vector<FoundItem<Item>> find() {
+    of_instance_.resize(query_.scene.instances.size());
+    for (const TopLevel& top : query_.scene.tops) visit_instances(top);
     std::vector<std::uint32_t> all(rays_.size());
     std::iota(all.begin(), all.end(), 0u);
+    std::size_t rays = all.size() * query_.scene.commons.size();
+    for (const auto& of_instance : of_instance_) rays += of_instance.size();
+    progress_.expect(rays);
     for (const auto& tree : query_.scene.commons)
       if (query_.scene.sees(*tree, query_.mask))
         find_in(*tree->geometry->triangles(), tree->numbers(), all, rays_);
-    of_instance_.resize(query_.scene.instances.size());
-    for (const TopLevel& top : query_.scene.tops) visit_instances(top);
     for (std::uint32_t instance = 0; instance < of_instance_.size(); ++instance)
       if (!of_instance_[instance].empty()) find_in_instance(instance);
+    progress_.finish();
     return std::move(found_);
   }
 
@@ -46,6 +50,7 @@ class InstanceLists {
     for (first_ = 0; first_ < rays_.size(); first_ += step) {
       batch.rays = rays_.data() + first_, batch.size = std::min(step, rays_.size() - first_);
       query_.queries().visit(top.tree.view(), batch);
+      progress_.tell_sometimes(0);
     }
   }
   static void note(void* context, const VisitedLeaf& leaf) {
@@ -72,12 +77,14 @@ class InstanceLists {
   void find_in(const Bvh& tree, const MemberNumbers& numbers, const std::vector<std::uint32_t>& picked,
                const std::vector<Ray>& rays) {
     options_.masks = query_.scene.masks_in(numbers.members[0].geometry);
+    options_.progress = progress_.of_tree(rays.size());
     append_lists<Item>(found_, TreeAccess::traced(tree), numbers, picked, rays, query_.skip, options_);
   }
 
   const SceneQuery& query_;
   const std::vector<Ray>& rays_;
   ListOptions options_;
+  ProgressInTrees progress_;
   const BoundedTreeArrays* top_ = nullptr;  // that is visited, with rays from `first_` on
   std::size_t first_ = 0;
   std::vector<std::vector<std::uint32_t>> of_instance_;  // the rays that come to each

@@ -1,10 +1,12 @@
 // Lists of hits or crossings of a scene's trees, of floats or doubles, as lists in the scene.
 #pragma once
 
+#include <chrono>
 #include <tuple>
 
 #include <raylanes/scene_d.hpp>
 
+#include "../../batch/in_parallel.hpp"
 #include "../../queries/ray_lists.hpp"
 #include "../common/common_tree.hpp"
 
@@ -87,6 +89,43 @@ void append_lists(std::vector<FoundItem<Item>>& found, const Tree& tree, const M
   for (std::size_t k = 0; k < rays.size(); ++k)
     for (const Item& item : lists[k]) found.push_back({in_scene(item, numbers.owners), picked[k]});
 }
+
+// Tells of the progress of lists that several trees make one after the other, as the contract of Progress says.
+class ProgressInTrees {
+ public:
+  explicit ProgressInTrees(const Progress* progress)
+      : progress_(progress != nullptr && *progress ? progress : nullptr) {
+    tell(0);
+  }
+
+  // Before the first tree: how many rays come to all trees.
+  void expect(std::size_t rays) { all_ = std::max(1.0, static_cast<double>(rays)); }
+  // For the options of the next tree, to which so many rays come.
+  const Progress* of_tree(std::size_t rays) {
+    if (progress_ == nullptr) return nullptr;
+    before_ += of_tree_, of_tree_ = static_cast<double>(rays);
+    share_of_tree_ = [this](double share) { tell_sometimes((before_ + share * of_tree_) / all_); };
+    return &share_of_tree_;
+  }
+  void finish() { tell(1); }
+  // The share is told if some time has passed: of thousands of trees each may take less than a report.
+  void tell_sometimes(double share) {
+    constexpr std::chrono::milliseconds between{10};
+    if (progress_ != nullptr && Clock::now() >= last_ + between) tell(std::min(share, 1.0));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void tell(double share) {
+    if (progress_ != nullptr) isolated([&] { (*progress_)(share); });
+    last_ = Clock::now();
+  }
+
+  const Progress* progress_;
+  Progress share_of_tree_;
+  double all_ = 1, before_ = 0, of_tree_ = 0;
+  Clock::time_point last_;
+};
 
 // A call for lists in a scene, whose options are found good.
 template <class T, class Query>

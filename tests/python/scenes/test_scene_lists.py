@@ -78,6 +78,10 @@ def test_stretches_name_their_instance(dtype):
     assert isinstance(within.items, raylanes.SceneStretches) and len(within.items) > 50
     wanted = expected(parts, rays, 5, lambda tree, moved: tree.stretches(moved), "entry")
     assert [sorted(row) for row in found(within, "entry")] == wanted
+    for call in (scene.stretches, scene.crossings, scene.all_hits):
+        heard = []
+        call(rays, progress=heard.append)
+        assert heard[-1] == 1
     first = within.items[0]
     assert isinstance(first, raylanes.SceneStretch) and first.instance == within.items["instance"][0]
 
