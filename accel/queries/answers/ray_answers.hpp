@@ -24,8 +24,8 @@ namespace raylanes {
 //                                            rays on are better traced as one, and so are FewRays that it does not take
 //   kept_at_once()                           KeptCalls by default options; may be missing
 // and where trees say in which part of them a ray is hit
-//   find_parts(rays, parts, options), hits_in_parts(rays, parts, some, hits, options)  as in filters/found_parts.hpp; false
-//                                            if there are no parts
+//   find_parts(rays, parts, options), hits_in_parts(rays, parts, some, hits, options)
+//                                            as in filters/found_parts.hpp; false if there are no parts
 template <class Tree>
 class RayDoor;
 
