@@ -261,7 +261,11 @@ class Race {
   // Whether the ray meets a sphere; `none` if floats may say otherwise.
   std::size_t exact_spheres(const Ray& ray) const {
     bool is_clear = true;
+    const Double3 origin = to_double(ray.origin), direction = to_double(ray.direction);
     for (const auto& [centre, radius] : spheres_) {
+      const Double3 to_centre = subtract(to_double(centre), origin);
+      const double beside = length(cross(to_centre, direction)) / length(direction);
+      if (beside > 1.01 * double{radius} + 0x1p-8 * length(to_centre)) continue;
       const auto exact = oracle::exact_sphere(ray, {centre[0], centre[1], centre[2], radius * radius});
       const bool is_near = std::abs(exact.free) <= 0x1p-18 * (exact.distance * exact.distance);
       if (exact.hit && !is_near) return 1;

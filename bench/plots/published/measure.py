@@ -37,6 +37,7 @@ def each(**words):
     return cases
 
 
+BUILT_IN = 'foliage'  # made by the tool
 SIX = ('bunny', 'sibenik', 'sponza', 'staircase', 'conference', 'kitchen')
 TWO_SIZES = ('1024x1024', '256x256')
 # By kind of file: the command as it is published, and what replaces its words in capitals, one run after the other.
@@ -73,8 +74,8 @@ COMMANDS = {
               each(SCENE=['sibenik', 'sponza', 'conference'])),
     'skips': ('raylanes trace SCENE --skip --against embree --mode automatic,call --rays shadow,diffuse,ao --path '
               'avx512,avx2 --size 512x512 --seconds 0.6', each(SCENE=['bunny', 'sibenik', 'conference'])),
-    'filters': ('raylanes trace SCENE --query kept --against embree --rays primary,diffuse --path avx512,avx2 --size '
-                '512x512 --seconds 0.6', each(SCENE=['bunny', 'sibenik', 'conference'])),
+    'filters': ('raylanes trace SCENE --query kept,spheres,own --against embree --rays primary,shadow,diffuse --path '
+                'avx512,avx2 --size 384x384 --seconds 0.4', each(SCENE=['bunny', 'sibenik', 'conference', BUILT_IN])),
     'kernels': ('raylanes kernels --path all', each()),
     'roots': ('raylanes roots --path all --stride 1024 --seconds 20', each()),
     'other_roots': ('raylanes roots --path all --stride 1024 --seconds 20', each()),
@@ -194,7 +195,7 @@ def main():
     if not options.machine and not processor()[0]:
         parser.error(f'{processor()[1]} has no name in MACHINES of results.py: add it, then pass --machine')
     wanted = list(dict.fromkeys(kinds[table] for table in options.only.split(',')))
-    names = {case['SCENE'] for kind in wanted for case in COMMANDS[kind][1] if 'SCENE' in case}
+    names = {case['SCENE'] for kind in wanted for case in COMMANDS[kind][1] if 'SCENE' in case} - {BUILT_IN}
     meshes = mesh_files(options.scenes) if names and options.scenes else {}
     if names - meshes.keys():
         parser.error(f"--scenes: meshes are missing: {', '.join(sorted(names - meshes.keys()))}")
