@@ -198,9 +198,10 @@ class Race {
   const BoundedTree& boxes() {
     if (boxes_) return *boxes_;
     std::vector<Box> boxes;
-    for (const auto& [centre, radius] : spheres_) {
-      const auto moved = [&](float by) { return Float3{centre[0] + by, centre[1] + by, centre[2] + by}; };
-      boxes.push_back({moved(-radius), moved(radius)});
+    for (const Sphere& sphere : spheres_) {
+      const Float3& at = sphere.centre;
+      const auto moved = [&](float by) { return Float3{at[0] + by, at[1] + by, at[2] + by}; };
+      boxes.push_back({moved(-sphere.radius), moved(sphere.radius)});
     }
     return boxes_.emplace(boxes);
   }
