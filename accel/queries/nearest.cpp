@@ -165,8 +165,7 @@ Traversal checked_traversal(const TracedTree& tree, const TraceOptions& options)
 
 void find_parts(const TracedTree& tree, const RaySource& rays, std::span<TreeReference> parts,
                 const TraceOptions& options) {
-  Traversal traversal = checked_traversal(tree, options);
-  traversal.choice.facing = rays.sides(options.facing);
+  const Traversal traversal = checked_traversal(tree, options);
   trace(traversal.tree, traversal.choice, rays, SpanSink<TreeReference>{parts}, options.threads);
 }
 void hits_in_parts(const TracedTree& tree, const RaySource& rays, std::span<const TreeReference> parts,
@@ -176,7 +175,7 @@ void hits_in_parts(const TracedTree& tree, const RaySource& rays, std::span<cons
   const auto find = [&](std::size_t begin, std::size_t end) {
     TreeView part = all;
     AskedOf<float> asked;
-    asked.facing = rays.sides(options.facing), asked.any = true;
+    asked.facing = options.facing, asked.any = true;
     for (std::size_t k = begin; k < end; ++k) {
       part.root = parts[some[k]];
       if (options.skip.first != nullptr) asked.skipped = options.skip[some[k]];

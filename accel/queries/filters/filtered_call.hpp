@@ -28,11 +28,11 @@ class FilteredCall {
     find(checked.rays, hits, filter_, checked.options);
   }
   void occluded(const Source& rays, std::span<std::uint8_t> occluded) const {
-    Options by = options_;
+    if (!filter_) return door_.trace(rays, occluded, options_);
+    Options by = options_;  // with the sides that the rays see
     if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
     const CheckedCall checked(door_.name, rays, occluded, by);
     by = checked.options, by.after = {};  // of closest() only
-    if (!filter_) return door_.trace(checked.rays, occluded, by);
     if (!counts(by) && !share_origin(checked.rays)) return decide(checked.rays, occluded, by);
     std::vector<Hit> hits(rays.size());
     find(checked.rays, hits, filter_, by);
@@ -79,7 +79,9 @@ class FilteredCall {
     door_.require_order(by);
     std::vector<std::size_t> hit;
     if (!keeps_any_hit(rays, occluded, by, hit)) {
-      door_.trace(rays, occluded, by);
+      Options of_batch = by;
+      if constexpr (requires { by.facing; }) of_batch.facing = rays.sides(by.facing);
+      door_.trace(rays, occluded, of_batch);
       for (std::size_t i = 0; i < rays.size(); ++i)
         if (rays.takes_part(i) && occluded[i] != 0) hit.push_back(i);
     }

@@ -1,6 +1,7 @@
 // Scenes of doubles that are made, change and are copied: what calls refuse, memory that runs out, trees that are kept.
 #include <sstream>
 
+#include <raylanes/kdtree.hpp>
 #include <raylanes/scene_d.hpp>
 
 #include "../../doubles/both_numbers.hpp"
