@@ -81,6 +81,7 @@ void expect_kept(const Tree& tree, const std::vector<AnyRay>& rays, const Case& 
   std::vector<std::uint8_t> occluded(n, 7);
   tree.closest(rays, hits, filter, options);
   EXPECT_EQ(wrong, 0u);
+  std::ranges::fill(last, -1);
   in_order = false;
   tree.occluded(rays, occluded, filter, options);
   EXPECT_EQ(wrong, 0u);
