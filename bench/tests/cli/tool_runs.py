@@ -75,9 +75,10 @@ RUNS = [
      "", lambda rows: calls_are_batches(rows) and values(rows, "warm") == {True}),
     ("trace hall --size 24x16 --mode single,automatic,call --rays primary,shadow,diffuse --batch 100,0 --skip", None,
      "", lambda rows: calls_are_batches(rows) and values(rows, "skips") == {True}),
-    ("trace hall --query all,crossings,count,kept --size 24x16 --against cgal", None, "", lambda rows:
+    ("trace hall --query all,crossings,count,kept,spheres,own --size 24x16 --against cgal", None, "", lambda rows:
      right(rows, contender="raylanes") and values(rows, "query") ==
-     {"all", "crossings", "count", *(f"kept, {share} % rejected" for share in (0, 50, 90))}),
+     {"all", "crossings", "count", "kept, leaves cut out", "spheres", "own spheres",
+      *(f"kept, {share} % rejected" for share in (0, 50, 90))}),
     ("trace hall --doubles --offset 1e6 --size 16x16 --rays primary,ao --against cgal", None, "", lambda rows:
      values(rows, "rays") == {"primary", "ao", "edges"} and right(rows, contender="raylanes")),
     ("trace hall --against scene,user --mode automatic,stream,call --size 24x16", None, "", lambda rows:
