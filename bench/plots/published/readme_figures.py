@@ -52,6 +52,9 @@ def figures(folder):
         add('roots', ('', '.1f', ' times'), lambda roots, to=accuracy: root_row(roots, to)['ratio_to_hardware'])
     for key in ('ratio', 'ratio_to_packed'):
         add('calls', ('', '.2f', ' times'), lambda calls, key=key: calls.mean(key, path='avx512'))
+    for mode in ('automatic', 'call'):
+        add('skips', ('', '.2f', ' times'),
+            lambda skips, mode=mode: skips.mean(path='avx512', rays='shadow', mode=mode))
     add('exact', ('up to ', '.0f', ' % longer'), longest_of_test)
     add('kernels', ('', '.0f', ' % over arrays'), longest_over_arrays)
     return found
