@@ -191,7 +191,7 @@ def embree_calls_table(results):
         return f"{1e3 * results.where(scene=scene, count=count, mode=mode, path=path)[0][key]:.3g}"
 
     return [
-        *table([title, *(f'{scene}, {rays}' for scene, rays in pictures)],
+        *table([title, *(f'{scene} {rays}' for scene, rays in pictures)],
                [line for line in lines if any(cell != '–' for cell in line[1:])]), '',
         *table(['random rays at the dragon', '`rtcIntersect1`', '`rtcOccluded1`'],
                [[mode, *(cell(rays='random', mode=mode, call=call) for call in ('rtcIntersect1', 'rtcOccluded1'))]
