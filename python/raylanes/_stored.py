@@ -31,7 +31,7 @@ class Copied:
 class Stored(Copied):
     """An object with the native object `self._tree`, which `_native_of` makes from a file."""
 
-    _natives = {}  # the other native classes than `_native_tree`, by how their files begin
+    _natives: dict = {}  # the other native classes than `_native_tree`, by how their files begin
 
     def save(self, file):
         """Write this to a file; load() reads it on any machine.
