@@ -104,26 +104,7 @@ class Race {
   }
   // Spheres as the library has them, or as primitives of the caller's with a test of their own.
   void add_spheres(bool are_own, const Path* path) {
-    const VisitOptions one{.path = path}, many{.path = path, .threads = options_.threads};
-    are_own ? add_both(
-                  are_own, path,
-                  [=, this](const Ray& ray) {
-                    return only_decides_ ? boxes().occluded(ray, test_, one)
-                                         : static_cast<bool>(boxes().closest(ray, test_, one));
-                  },
-                  [=, this](auto& found, auto& hits) {
-                    only_decides_ ? boxes().occluded(rays_, found, test_, many)
-                                  : boxes().closest(rays_, hits, test_, many);
-                  })
-            : add_both(
-                  are_own, path,
-                  [=, this](const Ray& ray) {
-                    return only_decides_ ? tree().occluded(ray, one)
-                                         : static_cast<bool>(tree().closest(ray, one));
-                  },
-                  [=, this](auto& found, auto& hits) {
-                    only_decides_ ? tree().occluded(rays_, found, many) : tree().closest(rays_, hits, many);
-                  });
+    are_own ? add_both(name_of(are_own), path, boxes(), test_) : add_both(name_of(are_own), path, tree());
   }
   void add_embree_spheres(bool are_own) {
     const auto embree = std::make_shared<EmbreeSpheres>(spheres_, are_own);
@@ -205,20 +186,25 @@ class Race {
     }
     return boxes_.emplace(boxes);
   }
-  template <class One, class Many>
-  void add_both(bool are_own, const Path* path, const One& one, const Many& many) {
+  // Calls and batches of a tree, with or without a test.
+  template <class Tree, class... Test>
+  void add_both(const std::string& name, const Path* path, const Tree& spheres, const Test&... test) {
+    const VisitOptions one{.path = path}, many{.path = path, .threads = options_.threads};
     const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
     const auto hits = std::make_shared<std::vector<Hit>>(rays_.size());
     const auto found_by = [=](std::size_t i) { return std::size_t{(*found)[i]}; };
-    add({{name_of(are_own), name_, "raylanes", path->name, rays_.size()},
-         [=, this] {
-           for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = one(rays_[i]) ? 1 : 0;
+    add({{name, name_, "raylanes", path->name, rays_.size()},
+         [=, this, &spheres, &test...] {
+           for (std::size_t i = 0; i < rays_.size(); ++i)
+             (*found)[i] = only_decides_ ? spheres.occluded(rays_[i], test..., one)
+                                         : static_cast<bool>(spheres.closest(rays_[i], test..., one));
          },
          found_by});
-    add({{name_of(are_own), name_, "raylanes, a batch", path->name, rays_.size()},
-         [=, this] {
-           many(*found, *hits);
-           for (std::size_t i = 0; i < rays_.size() && !only_decides_; ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
+    add({{name, name_, "raylanes, a batch", path->name, rays_.size()},
+         [=, this, &spheres, &test...] {
+           if (only_decides_) return spheres.occluded(rays_, *found, test..., many);
+           spheres.closest(rays_, *hits, test..., many);
+           for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
          },
          found_by});
   }

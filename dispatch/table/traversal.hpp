@@ -64,7 +64,7 @@ struct TraceBatchOf {
   std::size_t size = 0;
   HitOf<T>* hits = nullptr;          // of `closest`
   std::uint8_t* occluded = nullptr;  // of `any`: 1 if anything is hit within the segment, else 0
-  // And of each ray that is occluded, if not null: the root, or a node or leaf at which something is hit as a rule.
+  // And of each ray that is occluded, if not null: the root, or a node or leaf in which it mostly hits something.
   TreeReference* found_at = nullptr;
   // The caller's, one per thread, as many bytes as the row asks for, aligned to 64; what is left in it is garbage.
   void* scratch = nullptr;

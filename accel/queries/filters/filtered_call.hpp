@@ -41,23 +41,6 @@ class FilteredCall {
   }
 
  private:
-  // Some rays of a batch, as a batch of their own.
-  struct Some {
-    const std::vector<std::size_t>& indices;
-    std::vector<RayOf<Number>> rays = {};
-    std::vector<SkippedPrimitive> skips = {};
-
-    Some(const Source& all, const PrimitiveView& skip, const std::vector<std::size_t>& numbers)
-        : indices(numbers), skips(skips_of(skip, numbers)) {
-      for (const std::size_t i : numbers) rays.push_back(all[i]);
-    }
-    Source source() const { return {.records = rays, .skip = skips}; }
-    Options options(Options by) const {
-      by.active = nullptr, by.progress = nullptr, by.skip = skips;
-      return by;
-    }
-  };
-
   static bool counts(const Options& by) {
     if constexpr (requires { by.counters; }) return by.counters != nullptr;
     return false;
@@ -77,48 +60,56 @@ class FilteredCall {
   // nearest hits.
   void decide(const Source& rays, std::span<std::uint8_t> occluded, const Options& by) const {
     door_.require_order(by);
-    std::vector<std::size_t> hit;
-    if (!keeps_any_hit(rays, occluded, by, hit)) {
+    std::vector<std::uint8_t> decided(rays.size());  // apart, as filters may throw
+    std::vector<std::size_t> open;
+    bool have_parts = false;
+    if constexpr (requires(std::span<TreeReference> parts) { door_.find_parts(rays, parts, by); })
+      have_parts = keeps_any_hit(rays, decided, by, open);
+    if (!have_parts) {
       Options of_batch = by;
       if constexpr (requires { by.facing; }) of_batch.facing = rays.sides(by.facing);
-      door_.trace(rays, occluded, of_batch);
+      door_.trace(rays, decided, of_batch);
       for (std::size_t i = 0; i < rays.size(); ++i)
-        if (rays.takes_part(i) && occluded[i] != 0) hit.push_back(i);
+        if (rays.takes_part(i) && decided[i] != 0) open.push_back(i);
     }
-    const Some some(rays, by.skip, hit);
-    std::vector<Hit> hits(hit.size());
+    keep_nearest(rays, decided, by, open);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (rays.takes_part(i)) occluded[i] = decided[i];
+  }
+  // Decides of rays by a hit of each, where trees say in which part of them one is. `open` are the others in the end:
+  // there is none in the part, or the filter rejects it. False, if there are no parts.
+  bool keeps_any_hit(const Source& rays, std::span<std::uint8_t> decided, const Options& by,
+                     std::vector<std::size_t>& open) const {
+    std::vector<TreeReference> parts(rays.size());
+    if (!door_.find_parts(rays, parts, by)) return false;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (rays.takes_part(i) && parts[i] != empty_reference) open.push_back(i);
+    std::vector<Hit> hits(open.size());
+    door_.hits_in_parts(rays, parts, open, hits, by);
+    ask_about(hits, open, decided, by);
+    return true;
+  }
+  // Decides of some rays by their nearest hits that the filter keeps.
+  void keep_nearest(const Source& rays, std::span<std::uint8_t> decided, const Options& by,
+                    const std::vector<std::size_t>& open) const {
+    std::vector<RayOf<Number>> some;
+    for (const std::size_t i : open) some.push_back(rays[i]);
+    const auto skips = skips_of(by.skip, open);
+    Options of_some = by;
+    of_some.active = nullptr, of_some.progress = nullptr, of_some.skip = skips;
     std::vector<std::size_t> in_batch;
     const HitFilterOf<Hit> filter = [&](std::span<const std::size_t> indices, std::span<const Hit> found,
                                         std::span<std::uint8_t> rejected) {
       in_batch.clear();
-      for (const std::size_t k : indices) in_batch.push_back(hit[k]);
+      for (const std::size_t k : indices) in_batch.push_back(open[k]);
       filter_(in_batch, found, rejected);
     };
-    find(some.source(), hits, filter, some.options(by));
-    for (std::size_t k = 0; k < hit.size(); ++k) occluded[hit[k]] = hits[k] ? 1 : 0;
-  }
-  // Decides of rays by a hit of each, where trees say in which part of them one is. `open` are the others in the end:
-  // there is none in the part, or the filter rejects it. False, if there are no parts.
-  bool keeps_any_hit([[maybe_unused]] const Source& rays, [[maybe_unused]] std::span<std::uint8_t> occluded,
-                     [[maybe_unused]] const Options& by,
-                     [[maybe_unused]] std::vector<std::size_t>& open) const {
-    if constexpr (requires(std::span<TreeReference> found) { door_.find_parts(rays, found, by); }) {
-      std::vector<TreeReference> parts(rays.size());
-      if (!door_.find_parts(rays, parts, by)) return false;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!rays.takes_part(i)) continue;
-        occluded[i] = 0;
-        if (parts[i] != empty_reference) open.push_back(i);
-      }
-      std::vector<Hit> hits(open.size());
-      door_.hits_in_parts(rays, parts, open, hits, by);
-      ask_about(hits, open, occluded, by);
-      return true;
-    }
-    return false;
+    std::vector<Hit> hits(open.size());
+    find({.records = some, .skip = skips}, hits, filter, of_some);
+    for (std::size_t k = 0; k < open.size(); ++k) decided[open[k]] = hits[k] ? 1 : 0;
   }
   void ask_about(const std::vector<Hit>& hits, std::vector<std::size_t>& open,
-                 std::span<std::uint8_t> occluded, const Options& by) const {
+                 std::span<std::uint8_t> decided, const Options& by) const {
     const MayReject may_reject{masks_of(by)};
     Asking<HitFilterOf<Hit>> ask{filter_};
     std::vector<std::size_t> indices, left;
@@ -128,13 +119,13 @@ class FilteredCall {
         if (!hits[k])
           left.push_back(open[k]);
         else if (!may_reject(hits[k]))
-          occluded[open[k]] = 1;
+          decided[open[k]] = 1;
         else
           indices.push_back(open[k]), found.push_back(hits[k]);
       }
       ask(indices, found);
       for (std::size_t n = 0; n < indices.size(); ++n) {
-        occluded[indices[n]] = 1;
+        decided[indices[n]] = 1;
         if (ask.rejected[n] != 0) left.push_back(indices[n]);
       }
     }

@@ -6,7 +6,7 @@
 
 namespace raylanes {
 
-// Finds for each ray a part of the tree in which something is hit as a rule: empty_reference, if nothing is hit at all.
+// Finds for each ray a part of the tree in which it mostly hits something: empty_reference, if it hits nothing at all.
 // parts[i] is left as it is if ray i takes no part. Options are checked as for a batch, but
 // facing names the sides that the rays see, of segments too.
 void find_parts(const TracedTree& tree, const RaySource& rays, std::span<TreeReference> parts,

@@ -28,6 +28,14 @@ struct MemberNumbers {
   }
   // The number of a primitive; no_primitive if no member has it.
   std::uint32_t of(std::uint32_t instance, std::uint32_t primitive) const;
+  // The numbers of the primitives that rays skip; no_primitive for rays that take no part.
+  template <class Source>
+  std::vector<std::uint32_t> of_skips(const Source& rays, const PrimitiveView& skip) const {
+    std::vector<std::uint32_t> numbers(rays.size(), no_primitive);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (rays.takes_part(i)) numbers[i] = of(skip.instance(i), skip[i]);
+    return numbers;
+  }
   // The hit after which those hits come that are after `hit`, a SceneHit or SceneHitD, in the order of t, instance,
   // primitive.
   template <class AnyHit>

@@ -19,9 +19,7 @@ class BatchInCommon {
       : tree_(tree), rays_(rays), options_(options) {
     const MemberNumbers numbers = tree.numbers();
     if (options.skip.first != nullptr) {
-      skip_.resize(rays.size(), no_primitive);
-      for (std::size_t i = 0; i < skip_.size(); ++i)
-        if (rays.takes_part(i)) skip_[i] = numbers.of(options.skip.instance(i), options.skip[i]);
+      skip_ = numbers.of_skips(rays, options.skip);
       options_.skip = rays_.skip = skip_;
     }
     if (options.after.first != nullptr) {

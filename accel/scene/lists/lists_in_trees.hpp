@@ -56,8 +56,7 @@ RayLists<Item> lists_in_tree(const Tree& tree, const MemberNumbers& numbers, Ray
                              ListOptions options) {
   std::vector<std::uint32_t> skip;
   if (rays.skip.first != nullptr) {
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      skip.push_back(rays.takes_part(i) ? numbers.of(rays.skip.instance(i), rays.skip[i]) : no_primitive);
+    skip = numbers.of_skips(rays, rays.skip);
     rays.skip = skip;
   }
   options.skip = rays.skip;

@@ -147,9 +147,7 @@ struct BatchOfCommon {
   BatchOfCommon(const CommonTree& of, const RaySource& in_scene, const TraceOptions& by)
       : tree(of), rays(in_scene), options(by) {
     if (by.skip.first == nullptr) return;
-    const MemberNumbers numbers = tree.numbers();
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      skips.push_back(rays.takes_part(i) ? numbers.of(by.skip.instance(i), by.skip[i]) : no_primitive);
+    skips = tree.numbers().of_skips(rays, by.skip);
     rays.skip = options.skip = skips;
   }
   BatchOfCommon(const BatchOfCommon&) = delete;
