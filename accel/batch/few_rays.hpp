@@ -17,8 +17,34 @@ inline std::size_t batch_size_of(const TreeView& tree) {
   return tree.rays_wait ? min_flying_batch : min_batch;
 }
 
-// But from so many rays of floats on, nearest hits of rays with one origin may be a packet's: measured.
-inline constexpr std::size_t min_packet = 32;
+// But from so many rays of floats on, nearest hits of rays with one origin may be a packet's. From min_columns to below
+// max_in_columns, alike rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
+inline constexpr std::size_t min_packet = 32, min_columns = 8, max_in_columns = 512, rays_of_columns = 64;
+
+// Whether rays go one way from about one place: some of them in one octant, within 30 degrees and a fifth of the box.
+inline bool are_alike(std::span<const Ray> rays, const Box& box) {
+  constexpr float max_apart = 0.2f, min_cosine = 0.87f;
+  const Ray& a = rays[0];
+  float size = 0, of_a = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float side = box.hi[axis] - box.lo[axis];
+    size += side * side, of_a += a.direction[axis] * a.direction[axis];
+  }
+  for (std::size_t k = 1; k <= 3; ++k) {
+    const Ray& b = rays[(rays.size() - 1) * k / 3];
+    float apart = 0, product = 0, of_b = 0;
+    bool is_one_octant = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float d = a.direction[axis], e = b.direction[axis], way = b.origin[axis] - a.origin[axis];
+      apart += way * way, product += d * e, of_b += e * e;
+      is_one_octant &= (d < 0) == (e < 0);
+    }
+    const bool is_near = apart <= max_apart * max_apart * size,
+               is_parallel = product > 0 && product * product >= min_cosine * min_cosine * of_a * of_b;
+    if (!(is_near && is_parallel && is_one_octant)) return false;
+  }
+  return true;
+}
 
 // Whether options are the defaults, but for the mask and the threads. Without a branch for each of them.
 template <class Options>
@@ -65,9 +91,15 @@ class FewRays {
     if (!is_plain) rays_ = nullptr;
   }
   explicit operator bool() const { return rays_ != nullptr; }
-  bool may_be_packet() const {
-    return !only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin;
+  // Whether they may be better off together: rays of floats.
+  bool may_be_packet(const Box& box) const {
+    if (!only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin) return true;
+    return size_ >= min_columns && are_alike({rays_, size_}, box);
   }
+  bool may_be_columns() const { return size_ >= min_columns && size_ <= rays_of_columns; }
+  const AnyRay* rays() const { return rays_; }
+  Answer* answers() const { return answers_; }
+  std::size_t size() const { return size_; }
   // answers[i] = call(rays[i], i)
   template <class Call>
   void trace(const Call& call) const {

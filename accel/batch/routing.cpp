@@ -1,7 +1,9 @@
 #include "routing.hpp"
 
+#include "../../dispatch/table/kernel_table.hpp"
 #include "batch.hpp"
 #include "few_rays.hpp"
+#include "scratch.hpp"
 #include "shared_points.hpp"
 
 namespace raylanes {
@@ -175,10 +177,26 @@ bool is_tiny(const Box& bounds) {
   return largest < min_size;
 }
 
+// Whether rays are few, and the first of them alike.
+bool may_be_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  return batch.size >= min_columns && batch.size < max_in_columns &&
+         choice.mode == TraversalMode::automatic && choice.hint != BatchHint::incoherent &&
+         choice.nearest_triangle != nullptr && !choice.fixed_parts && tree.max_fused_size != 0.0f &&
+         are_alike({batch.rays, std::min(batch.size, rays_of_columns)}, tree.bounds);
+}
+void run_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  for (std::size_t i = 0; i < batch.size; i += rays_of_columns) {
+    const TraceBatch part = batch.part(i, std::min(rays_of_columns, batch.size - i));
+    const bool pay = part.size >= min_columns && are_alike({part.rays, part.size}, tree.bounds);
+    run_by(pay ? TraversalMode::stream : TraversalMode::single, tree, choice, part);
+  }
+}
+
 // Traces runs of rays that share an origin, and the rays between runs.
 void run(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   if (choice.mode == TraversalMode::single || is_tiny(tree.bounds)) return run(tree, *choice.single, batch);
   if (has_end(choice, batch)) return run_shared(tree, choice, batch, SharedApex::end, *choice.end);
+  if (may_be_columns(tree, choice, batch)) return run_columns(tree, choice, batch);
   const std::span<const Ray> rays(batch.rays, batch.size);
   const bool origins = looks_for(choice, BatchHint::shared_origin),
              ends = batch.occluded != nullptr && looks_for(choice, BatchHint::shared_end);
@@ -236,8 +254,7 @@ void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, 
   plan.progress = choice.progress, plan.fixed_parts = choice.fixed_parts;
   if (rays.segments != nullptr && rays.segments->is_direction) plan.max_call = max_parallel_call;
   over_calls(
-      plan, rays, sink,
-      [&](std::size_t n) { return scratch_bytes(choice, n) + (finds_parts ? n : 0); },
+      plan, rays, sink, [&](std::size_t n) { return scratch_bytes(choice, n) + (finds_parts ? n : 0); },
       [&](const RayCall<Answer>& call) {
         TraceBatch batch;
         batch.rays = call.rays, batch.size = call.size;
@@ -253,6 +270,22 @@ void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, 
 template void trace(const TreeView&, TraversalChoice, const RaySource&, const HitSink<Hit>&, int);
 template void trace(const TreeView&, TraversalChoice, const RaySource&, const SpanSink<std::uint8_t>&, int);
 template void trace(const TreeView&, TraversalChoice, const RaySource&, const SpanSink<TreeReference>&, int);
+
+bool trace_alike(const TreeView& tree, TraceBatch batch) {
+  if (tree.max_fused_size == 0.0f || is_tiny(tree.bounds) ||
+      !are_alike({batch.rays, batch.size}, tree.bounds))
+    return false;
+  constexpr TraceOptions usual;
+  constexpr auto test = static_cast<std::size_t>(usual.test), grade = static_cast<std::size_t>(usual.grade);
+  const TraversalRow& row = kernels_of(path_in_use())
+                                .traversal.mode[static_cast<std::size_t>(TraversalMode::stream)]
+                                .row[test][grade];
+  const std::size_t bytes = row.scratch_bytes(batch.size);
+  Scratch scratch(bytes);
+  batch.scratch = scratch.take<std::byte>(bytes);
+  run(tree, row, batch);
+  return true;
+}
 
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch) {
   if (batch.size == 0) return;

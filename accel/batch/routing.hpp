@@ -40,6 +40,10 @@ template <class Sink>
 void trace(const TreeView& tree, TraversalChoice choice, const RaySource& rays, const Sink& sink,
            int threads);
 
+// Few rays by default options, if they are alike: at most rays_of_columns, of a tree whose single rays have a CallRow.
+// False: nothing is done.
+bool trace_alike(const TreeView& tree, TraceBatch batch);
+
 // All rays of a batch on this thread, whose answers lie in a row, with scratch of its own; `size` at most
 // max_rays_of_a_call.
 void trace_here(const TreeView& tree, const TraversalChoice& choice, TraceBatch batch);

@@ -179,7 +179,14 @@ class KernelsOfTree {
   std::size_t batch_size() const { return batch_size_of(*ready_); }
   template <class Answer>
   bool takes(const FewRays<Ray, Answer>& few) const {
-    return !few.may_be_packet();
+    return !few.may_be_packet(ready_->bounds);
+  }
+  template <class Answer>
+  bool trace_alike(const FewRays<Ray, Answer>& few) const {
+    TraceBatch batch;
+    batch.rays = few.rays(), batch.size = few.size();
+    set_answers(batch, few.answers());
+    return raylanes::trace_alike(*ready_, batch);
   }
   Hit closest(const Ray& ray, std::size_t i) const {
     return rows_.closest(*ready_, ray, options_.facing, [&] { return skipped_of(options_, i); });
@@ -289,7 +296,8 @@ class RayDoor<TriangleTree> {
   bool is_quick() const { return ready_ != nullptr && !QuietFloats::are_wanted(); }
   // Usual options need no rows of other kernels, and no copy of the tree, whose vectors would wait for its stores.
   template <class Answer, class Call>
-  Answer asking(const detail::Rejection<Hit>& rejection, const TraceOptions& options, const Call& call) const {
+  Answer asking(const detail::Rejection<Hit>& rejection, const TraceOptions& options,
+                const Call& call) const {
     const KeptCall<float> kept(rejection, options);
     const auto* const row = &kernels_of(checked_path(options.path)).queries.plain.kept;
     const QuietFloats quiet;

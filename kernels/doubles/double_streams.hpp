@@ -158,7 +158,10 @@ class DoubleStreamLeaves
     const RayLanes<V> rays{vec3(row), vec3(row + 4)};
     V length =
         multiply_add<Grade::fast>((abs(row[4]) + abs(row[5])) + abs(row[6]), V(1.0 + 0x1p-20), V(0x1p-45));
-    this->classify_triangles(rays, length, screen, triangles, first, list, first_lanes<N>(size), left);
+    const std::uint32_t found =
+        this->classify_triangles(rays, length, screen, first_lanes<tree_width>(unsigned(triangles)), first,
+                                 list, first_lanes<N>(size), left);
+    this->store_certain(found, left, list);
   }
 
   void keep(std::uint32_t i, double t_lo, double t_hi, std::uint32_t leaf_triangle) {

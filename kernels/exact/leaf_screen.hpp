@@ -123,7 +123,8 @@ class LeafScreenOf : Arithmetic<Grade::fast> {
 };
 
 struct LeafScreen : LeafScreenOf<float> {
-  LeafScreen(const LeafBlock<9>& block, int triangles, float farthest, float scale)
+  // Out of line: much code for the few calls that there are.
+  [[gnu::noinline]] LeafScreen(const LeafBlock<9>& block, int triangles, float farthest, float scale)
       : LeafScreenOf([&](int i) { return block.number[i]; }, triangles, farthest, scale) {}
 };
 

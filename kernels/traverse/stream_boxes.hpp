@@ -13,15 +13,26 @@ struct OctantNode {
   float near[3][tree_width], far[3][tree_width];
 
   OctantNode(const WideNode& node, int octant, float padding) {
-    using V = Floats<node_lanes>;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool negative = (octant >> axis & 1) != 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int first = 0; first < tree_width; first += node_lanes)
+        set(axis, first, V::load(node.lo[axis] + first), V::load(node.hi[axis] + first), octant, padding);
+  }
+  // The boxes of the triangles of a leaf.
+  OctantNode(const LeafBlock<9>& leaf, int octant, float padding) {
+    for (int axis = 0; axis < 3; ++axis)
       for (int first = 0; first < tree_width; first += node_lanes) {
-        V lo = V::load(node.lo[axis] + first) - V(padding), hi = V::load(node.hi[axis] + first) + V(padding);
-        lo.store((negative ? far : near)[axis] + first);
-        hi.store((negative ? near : far)[axis] + first);
+        const auto corner = [&](int k) { return V::load(leaf.number[3 * k + axis] + first); };
+        V a = corner(0), b = corner(1), c = corner(2);
+        set(axis, first, min(min(a, b), c), max(max(a, b), c), octant, padding);
       }
-    }
+  }
+
+ private:
+  using V = Floats<node_lanes>;
+  void set(int axis, int first, V lo, V hi, int octant, float padding) {
+    const bool negative = (octant >> axis & 1) != 0;
+    (lo - V(padding)).store((negative ? far : near)[axis] + first);
+    (hi + V(padding)).store((negative ? near : far)[axis] + first);
   }
 };
 

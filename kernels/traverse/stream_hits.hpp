@@ -3,7 +3,7 @@
 #pragma once
 
 #include "../exact/exact_test.hpp"
-#include "stream_octant.hpp"
+#include "stream_columns.hpp"
 
 namespace raylanes {
 namespace {
@@ -11,8 +11,9 @@ namespace {
 // The best hits of an octant's rays, which are packed times `scale`, into the batch.
 class StreamHits {
  public:
-  StreamHits(const TreeView& tree, const TraceBatch& batch, const OctantRays& rays, float scale)
-      : triangles_(tree), batch_(batch), rays_(rays), scale_(scale) {}
+  StreamHits(const TreeView& tree, const TraceBatch& batch, const OctantRays& rays,
+             const StreamColumns* columns, float scale)
+      : triangles_(tree), batch_(batch), rays_(rays), columns_(columns), scale_(scale) {}
 
   [[gnu::noinline, gnu::flatten]] void store() const {
     for (std::uint32_t i = 0; i < rays_.size; i += stream_lanes) {
@@ -42,7 +43,10 @@ class StreamHits {
       hit |= (is_hit ? 1u : 0u) << lane;
     }
     StreamFloats packed[row_floats];
-    load_rows(from, packed);
+    if (columns_ == nullptr)
+      load_rows(from, packed);
+    else
+      for (int k = 0; k < 6; ++k) packed[k] = StreamFloats::load(columns_->packed[k] + first);
     for (int k = 0; k < 6; ++k) packed[k] = packed[k] * StreamFloats(1.0f / scale_);
     const auto numbers = rounded_numbers<stream_lanes>(vec3(packed), vec3(packed + 3), corner);
     const auto is_hit = FloatMask<stream_lanes>::from_bits(hit);
@@ -69,6 +73,7 @@ class StreamHits {
   TreeTriangles triangles_;
   const TraceBatch& batch_;
   const OctantRays& rays_;
+  const StreamColumns* columns_;  // of few rays
   float scale_;
 };
 

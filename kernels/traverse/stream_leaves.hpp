@@ -2,102 +2,13 @@
 // have hit so far.
 #pragma once
 
-#include "../exact/leaf_screen.hpp"
-#include "../ray/ranges.hpp"
+#include "screened_rays.hpp"
 #include "single.hpp"
+#include "stream_few.hpp"
 #include "stream_hits.hpp"
 
 namespace raylanes {
 namespace {
-
-// Vectors of rays against the triangles of a leaf by a screen. Self keeps rays by their index in the octant:
-//   keep(i, t_lo, t_hi, leaf_triangle)   has a new best hit
-//   end_ray(i)                           is hit, if that is all that is asked
-//   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept
-//   is_hit(i, leaf_triangle)             whether the triangle is hit, exactly
-//   admitted(lanes, list, leaf_triangle)   the lanes for whose rays the triangle is admitted; if sides() chooses
-template <class Self, class V, bool only_decides>
-class ScreenedRays {
- protected:
-  // In registers while triangles are tested: a load of what was just stored lane by lane waits for all stores before
-  // it.
-  using State = RayState<V, only_decides>;
-
-  // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  template <class Screen>
-  void classify_triangles(const RayLanes<V>& rays, V length, const Screen& screen, int triangles,
-                          std::uint32_t first, const ListEntry* list, std::uint32_t active, State& left) {
-    auto going = MaskOf<V>::from_bits(active), found = going & ~going;
-    for (int triangle = 0; triangle < triangles; ++triangle) {
-      const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(triangle);
-      self().counters().triangles(bits(going));
-      const auto verdict = screen.classify(rays, length, triangle, left, self().sides());
-      auto certain = verdict.certain & going, undecided = verdict.undecided & going;
-      if constexpr (decltype(self().sides())::chooses) {
-        const auto admitted_by_rule =
-            MaskOf<V>::from_bits(self().admitted(bits(certain | undecided), list, leaf_triangle));
-        certain = certain & admitted_by_rule, undecided = undecided & admitted_by_rule;
-      }
-      self().counters().hits(bits(certain)), self().counters().undecided(bits(undecided));
-      found = found | certain;
-      if constexpr (only_decides) {
-        going = going & ~certain;
-      } else {
-        left.keep(certain, verdict.t_lo, verdict.t_hi, as_bits(leaf_triangle));
-      }
-      if (any(undecided)) [[unlikely]] {
-        store_certain(bits(found), left, list);
-        found = found & ~found;
-        going = going & ~MaskOf<V>::from_bits(take_undecided(bits(undecided), list, leaf_triangle, left));
-      }
-      if (only_decides && !any(going)) break;
-    }
-    store_certain(bits(found), left, list);
-  }
-
- private:
-  using T = typename NumberOf<V>::type;
-  using Word = typename BitsOf<T>::type;
-  static constexpr int N = lanes_of<V>;
-
-  Self& self() { return static_cast<Self&>(*this); }
-  static V as_bits(std::uint32_t word) { return as<T>(Lanes<Word, N>(Word{word})); }
-
-  void store_certain(std::uint32_t found, const State& left, const ListEntry* list) {
-    if (found == 0) return;
-    T t_lo[N], t_hi[N];
-    Word leaf_triangle[N];
-    if constexpr (!only_decides)
-      left.t_lo.store(t_lo), left.tmax.store(t_hi), as<Word>(left.leaf_triangle).store(leaf_triangle);
-    for (; found != 0; found &= found - 1) {
-      const int lane = std::countr_zero(found);
-      if constexpr (only_decides)
-        self().end_ray(index_of(list[lane]));
-      else
-        self().keep(index_of(list[lane]), t_lo[lane], t_hi[lane],
-                    static_cast<std::uint32_t>(leaf_triangle[lane]));
-    }
-  }
-  // Returns the rays that end.
-  [[gnu::noinline]] std::uint32_t take_undecided(std::uint32_t undecided, const ListEntry* list,
-                                                 std::uint32_t leaf_triangle, State& left) {
-    std::uint32_t ended = 0;
-    for (; undecided != 0; undecided &= undecided - 1) {
-      const int lane = std::countr_zero(undecided);
-      const std::uint32_t i = index_of(list[lane]);
-      if constexpr (only_decides) {
-        if (!self().is_hit(i, leaf_triangle)) continue;
-        self().end_ray(i);
-        ended |= 1u << lane;
-      } else {
-        const auto best = self().compared(i, leaf_triangle);
-        const auto changed = MaskOf<V>::from_bits(1u << lane);
-        left.keep(changed, V(best.t_lo), V(best.tmax), as_bits(best.leaf_triangle));
-      }
-    }
-    return ended;
-  }
-};
 
 template <class Test, bool only_decides, class Counters, class Sides = NoRule>
 class StreamLeaves
@@ -106,6 +17,8 @@ class StreamLeaves
   using Base = StreamOctant<Counters>;
   using Screened = ScreenedRays<StreamLeaves, StreamFloats, only_decides>;
   friend Screened;
+  // Counted rows go by lists.
+  static constexpr bool takes_few = screens<Test> && max_few != 0 && std::is_same_v<Counters, NoCounters>;
   using Base::farthest_, Base::needs_, Base::rays_, Base::tree_;
 
  public:
@@ -124,13 +37,13 @@ class StreamLeaves
   void begin() {
     for (std::uint32_t i = 0; i < rays_.size && !only_decides; ++i)
       if constexpr (screens<Test>)
-        rays_.t_lo(i) = rays_.rows[i].tmax, rays_.leaf_triangle[i] = no_leaf_triangle;
+        rays_.t_lo(i) = rays_.tmax(i), rays_.leaf_triangle[i] = no_leaf_triangle;
       else
         rays_.hits[i] = Hit();
   }
   void store_results() {
     if constexpr (screens<Test> && !only_decides)
-      StreamHits(tree_, batch_, rays_, needs_.scale).store();
+      StreamHits(tree_, batch_, rays_, this->columns_, needs_.scale).store();
     else if constexpr (!only_decides)
       for (std::uint32_t i = 0; i < rays_.size; ++i) batch_.hits[rays_.number[i]] = rays_.hits[i];
   }
@@ -147,6 +60,29 @@ class StreamLeaves
     const auto screen = screen_of(block, triangles);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
       test_triangles(block, screen, triangles, leaf, list + i, size - i);
+  }
+
+  bool trace_few(const OctantRays& memory) requires takes_few {
+    FewInStream few(*this);
+    if (!few.take(memory)) return false;
+    few.trace();
+    store_results();
+    return true;
+  }
+  [[gnu::noinline, gnu::flatten]] void visit_few(TreeReference leaf, std::uint64_t rays) requires takes_few {
+    const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
+    const int size = leaf_size(leaf);
+    float entry[tree_width];
+    const OctantNode planes(block, this->octant_, this->padding_);
+    const std::uint32_t triangles =
+        this->columns_->frustum.boxes_met(planes, entry) & first_lanes<tree_width>(unsigned(size));
+    if (triangles == 0) return;
+    at_ = leaf;
+    const LeafScreen screen(block, size, farthest_, needs_.scale);
+    for (std::uint32_t first = 0; rays != 0; first += stream_lanes, rays >>= stream_lanes % 64)
+      if (const auto lanes = static_cast<std::uint32_t>(rays) & first_lanes<stream_lanes>(stream_lanes);
+          lanes != 0)
+        test_columns(*this->columns_, first, lanes, screen, triangles, leaf_triangle_of(leaf, 0));
   }
 
   [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
@@ -170,7 +106,7 @@ class StreamLeaves
   void trace_single_below(const TreeView& below, const Prepared& prepared, std::uint32_t i, Counters& cost) {
     const Ray& ray = batch_.rays[rays_.number[i]];
     if constexpr (only_decides) {
-      auto query = any_within(rays_.rows[i].tmax, sides(i));
+      auto query = any_within(rays_.tmax(i), sides(i));
       trace<Test>(below, ray, prepared, query, cost);
       if (query.found) end_ray(i);
     } else if constexpr (screens<Test>) {
@@ -186,15 +122,15 @@ class StreamLeaves
   }
 
   void keep(std::uint32_t i, float t_lo, float t_hi, std::uint32_t leaf_triangle) {
-    rays_.rows[i].tmax = t_hi, rays_.t_lo(i) = t_lo, rays_.leaf_triangle[i] = leaf_triangle;
+    rays_.tmax(i) = t_hi, rays_.t_lo(i) = t_lo, rays_.leaf_triangle[i] = leaf_triangle;
   }
   Candidate candidate_of(std::uint32_t i) const {
-    return {rays_.t_lo(i), rays_.rows[i].tmax, rays_.leaf_triangle[i]};
+    return {rays_.t_lo(i), rays_.tmax(i), rays_.leaf_triangle[i]};
   }
   // Nothing enters a box before −infinity.
   static constexpr float ended = -std::numeric_limits<float>::infinity();
   void end_ray(std::uint32_t i) {
-    rays_.rows[i].tmax = ended;
+    rays_.tmax(i) = ended;
     batch_.occluded[rays_.number[i]] = 1;
     if (batch_.found_at != nullptr) [[unlikely]]
       batch_.found_at[rays_.number[i]] = at_;
@@ -214,13 +150,13 @@ class StreamLeaves
   }
   bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) {
     const Ray& ray = batch_.rays[rays_.number[i]];
-    if (rays_.rows[i].tmax == ended) return false;
+    if (rays_.tmax(i) == ended) return false;
     int beside = 0;
     if (any_exact_hit(TreeTriangles(tree_), ray, 1u, leaf_triangle, sides().facing, &beside)) return true;
     if (beside == 0) return false;
-    auto query = any_within(rays_.rows[i].tmax, sides(i));
+    auto query = any_within(rays_.tmax(i), sides(i));
     finish_beside(ray, query);
-    rays_.rows[i].tmax = ended;
+    rays_.tmax(i) = ended;
     return query.found;
   }
   // A ray that came to a triangle beside it goes on alone.
@@ -267,12 +203,35 @@ class StreamLeaves
     std::uint32_t active = first_lanes<stream_lanes>(size);
     if constexpr (screens<Test>) {
       const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
-      this->classify_triangles(rays, packed[6], screen, triangles, leaf_triangle_of(leaf, 0), list, active,
-                               left);
+      const std::uint32_t found =
+          this->classify_triangles(rays, packed[6], screen, first_lanes<tree_width>(unsigned(triangles)),
+                                   leaf_triangle_of(leaf, 0), list, active, left);
+      this->store_certain(found, left, list);
     } else if constexpr (only_decides) {
       find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);
     } else {
       find_nearest(unpack_rays<Test>(packed), block, triangles, list, active, left);
+    }
+  }
+  void test_columns(const StreamColumns& columns, std::uint32_t first, std::uint32_t lanes,
+                    const LeafScreen& screen, std::uint32_t triangles, std::uint32_t leaf_triangle) {
+    const auto column = [&](int k) { return StreamFloats::load(columns.packed[k] + first); };
+    const RayLanes<StreamFloats> rays{{column(0), column(1), column(2)}, {column(3), column(4), column(5)}};
+    State left{};
+    left.tmin = StreamFloats::load(columns.row[6] + first);
+    left.tmax = StreamFloats::load(rays_.first_tmax + first);
+    if constexpr (!only_decides) {
+      left.t_lo = StreamFloats::load(rays_.first_t_lo + first);
+      left.leaf_triangle = as<float>(StreamBits::load(rays_.leaf_triangle + first));
+    }
+    const ListEntry* const list = few_indices.of + first;
+    const std::uint32_t found =
+        this->classify_triangles(rays, column(6), screen, triangles, leaf_triangle, list, lanes, left);
+    if constexpr (only_decides) {
+      this->store_certain(found, left, list);
+    } else {
+      left.tmax.store(rays_.first_tmax + first), left.t_lo.store(rays_.first_t_lo + first);
+      as<std::uint32_t>(left.leaf_triangle).store(rays_.leaf_triangle + first);
     }
   }
   template <class Rays>

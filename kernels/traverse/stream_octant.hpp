@@ -41,6 +41,8 @@ struct StreamNeeds {
   float scale = 1.0f;          // of packed rays
 };
 
+struct StreamColumns;
+
 // A class of leaves derives from this one and says what becomes of hits. The same object serves one octant after the
 // other.
 template <class Counters>
@@ -51,6 +53,10 @@ class StreamOctant {
     void (*begin)(StreamOctant&);
     // The list may be read in whole registers.
     void (*visit_leaf)(StreamOctant&, TreeReference leaf, const ListEntry* list, std::uint32_t size);
+    // The whole batch, if its rays are few and of one octant; else false. The memory is for them. Null: they are never.
+    bool (*trace_few)(StreamOctant&, const OctantRays& memory);
+    // Some of them, a bit each.
+    void (*visit_few)(StreamOctant&, TreeReference leaf, std::uint64_t rays);
     // Rays that go on alone.
     void (*trace_singly)(StreamOctant&, TreeReference from, const ListEntry* list, std::uint32_t size);
     void (*store_results)(StreamOctant&);                     // the walk has ended
@@ -72,6 +78,14 @@ class StreamOctant {
     calls.trace_single = [](StreamOctant& of, std::size_t number) {
       static_cast<Leaves&>(of).trace_single(number);
     };
+    if constexpr (requires { &Leaves::visit_few; }) {
+      calls.trace_few = [](StreamOctant& of, const OctantRays& memory) {
+        return static_cast<Leaves&>(of).trace_few(memory);
+      };
+      calls.visit_few = [](StreamOctant& of, TreeReference leaf, std::uint64_t rays) {
+        static_cast<Leaves&>(of).visit_few(leaf, rays);
+      };
+    }
     if constexpr (requires(Leaves & leaves) { leaves.prefetch_leaf(TreeReference{}); })
       calls.prefetch_leaf = [](StreamOctant& of, TreeReference leaf) {
         static_cast<Leaves&>(of).prefetch_leaf(leaf);
@@ -123,6 +137,7 @@ class StreamOctant {
   [[no_unique_address]] Counters counters_;
   // For each octant:
   OctantRays rays_{};
+  const StreamColumns* columns_ = nullptr;  // of few rays
   int octant_ = 0;
   float farthest_ = 0.0f;  // at least the distance along an axis from any origin to a corner
   float padding_ = 0.0f;   // of boxes

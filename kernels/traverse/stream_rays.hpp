@@ -37,10 +37,12 @@ struct OctantRays {
   std::uint32_t* number;         // of the ray in the batch
   std::uint32_t* leaf_triangle;  // of the best hit, for tests that screen
   Hit* hits;                     // of others: the batch's lie far apart
-  std::uint32_t size;
+  // The upper and the lower bound of the best hit's t, for tests that screen: so many floats apart.
+  float *first_tmax, *first_t_lo;
+  std::uint32_t step, size;
 
-  // The lower bound of the best hit's t, for tests that screen.
-  float& t_lo(std::uint32_t i) const { return packed[i][free_column]; }
+  float& tmax(std::uint32_t i) const { return first_tmax[std::size_t{i} * step]; }
+  float& t_lo(std::uint32_t i) const { return first_t_lo[std::size_t{i} * step]; }
 };
 
 // In very small and very large scenes floats would flush or leave out what a screen computes: there rays and triangles
@@ -85,6 +87,13 @@ struct StreamableRays {
     lanes = bits(are_valid(rays.origin, rays.direction, rays.tmin, rays.tmax) & (rays.tmin >= zero) &
                  (farthest <= V(extent_of(bounds) < 0x1p-15f ? 1.0f : 0x1p60f)) & (largest >= V(0x1p-30f)) &
                  (largest <= V(0x1p30f)));
+  }
+  // Whether all lanes are of this octant.
+  bool are_of(int octant) const {
+    constexpr std::uint32_t all = first_lanes<N>(N);
+    std::uint32_t others = all & ~lanes;
+    for (int axis = 0; axis < 3; ++axis) others |= negative[axis] ^ ((octant >> axis & 1) != 0 ? all : 0u);
+    return others == 0;
   }
   int octant(int lane) const {
     return static_cast<int>((negative[0] >> lane & 1u) | (negative[1] >> lane & 1u) << 1 |

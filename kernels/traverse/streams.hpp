@@ -17,9 +17,12 @@ class OctantScratch {
 
   OctantScratch(void* scratch, std::size_t rays) : next_(static_cast<std::byte*>(scratch)) {
     const std::size_t room = room_of(rays);
-    for (OctantRays& of : octant)
-      of = {take<StreamRow>(room),     take<PackedRow>(room), take<std::uint32_t>(room),
-            take<std::uint32_t>(room), take<Hit>(room),       0};
+    for (OctantRays& of : octant) {
+      of.rows = take<StreamRow>(room), of.packed = take<PackedRow>(room);
+      of.number = take<std::uint32_t>(room), of.leaf_triangle = take<std::uint32_t>(room);
+      of.hits = take<Hit>(room), of.size = 0;
+      of.first_tmax = &of.rows->tmax, of.first_t_lo = *of.packed + free_column, of.step = row_floats;
+    }
     max_entries = entries_per_ray * room;
     entries = take<ListEntry>(max_entries);
   }
@@ -59,6 +62,9 @@ class Streams {
         full_at_(OctantScratch::full_at(leaves.batch_size_)) {}
 
   [[gnu::noinline]] void trace() {
+    if (of_.calls_.trace_few != nullptr && of_.batch_size_ <= max_few &&
+        of_.calls_.trace_few(of_, scratch_.octant[0]))
+      return;
     for (std::size_t i = 0; i < of_.batch_size_; i += stream_lanes) take_rays(i);
     for (std::size_t o = 0; o < octants; ++o) trace_octant(o);
   }

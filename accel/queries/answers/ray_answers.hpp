@@ -22,6 +22,8 @@ namespace raylanes {
 //                                            may skip a primitive; converts to false if options ask for more.
 //                                            are_default: as are_defaults() of the options. Batches from batch_size()
 //                                            rays on are better traced as one, and so are FewRays that it does not take
+//   trace_alike(few)                         of those kernels, by default options: false if rays are not alike. May be
+//                                            missing
 //   kept_at_once()                           KeptCalls by default options; may be missing
 // and where trees say in which part of them a ray is hit
 //   find_parts(rays, parts, options), hits_in_parts(rays, parts, some, hits, options)
@@ -36,7 +38,10 @@ template <bool are_default, class Door, class AnyRay, class Answer, class Option
   const auto kernels = door.kernels(options, rays.count, are_default);
   if (!kernels) return false;
   const FewRays<AnyRay, Answer> few(rays, answers, count, options, are_default, kernels.batch_size());
-  if (!few || !kernels.takes(few)) return false;
+  if (!few) return false;
+  if constexpr (are_default && requires { kernels.trace_alike(few); })
+    if (few.may_be_columns() && kernels.trace_alike(few)) return true;
+  if (!kernels.takes(few)) return false;
   few.trace([&](const AnyRay& ray, std::size_t i) {
     if constexpr (std::is_same_v<Answer, std::uint8_t>)
       return kernels.any(ray, i);

@@ -112,7 +112,7 @@ class KernelsOfScene {
   std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
   template <class Answer>
   bool takes(const FewRays<Ray, Answer>& few) const {
-    return tree_ != nullptr ? !few.may_be_packet() : !scene_.has_others();
+    return tree_ != nullptr ? !few.may_be_packet(tree_->view->bounds) : !scene_.has_others();
   }
   SceneHit closest(const Ray& ray, std::size_t i) const {
     if (tree_ == nullptr) return walked_closest(scene_, *path_, ray, options_.mask);
