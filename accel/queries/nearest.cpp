@@ -260,6 +260,11 @@ class RayDoor<TriangleTree> {
     raylanes::hits_in_parts(TreeAccess::traced(tree_), rays, parts, some, hits, options);
   }
 
+  template <class Sink>
+  bool keep(const RaySource& rays, const Sink& sink, const detail::BatchRejection<Hit>& rejected,
+            const TraceOptions& by) const {
+    return keep_in_tree(TreeAccess::traced(tree_), rays, sink, rejected, by, AsHitOfTree());
+  }
   static void require_order(const TraceOptions& options) { require_exact(options); }
   TreeLists<float, TracedTree> lists(const TraceOptions&) const { return {TreeAccess::traced(tree_)}; }
   using KeptOfTree = KeptCalls<TreeView, float>;

@@ -72,10 +72,7 @@ class Race {
   void add_kept(unsigned percent, const Path* path) {
     const unsigned share = share_of(percent);
     const auto rejects = [=](const Hit& hit) { return is_rejected(hit, share); };
-    const HitFilter filter = [=](std::span<const std::size_t>, std::span<const Hit> hits,
-                                 std::span<std::uint8_t> rejected) {
-      for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = rejects(hits[k]) ? 1 : 0;
-    };
+    const auto rejects_of_batch = [=](std::size_t, const Hit& hit) { return is_rejected(hit, share); };
     const TraceOptions one{.path = path}, many{.path = path, .threads = options_.threads};
     const auto found = std::make_shared<std::vector<std::uint8_t>>(rays_.size());
     const auto hits = std::make_shared<std::vector<Hit>>(rays_.size());
@@ -89,8 +86,8 @@ class Race {
          found_by});
     add({{kept_name(percent), name_, "raylanes, a batch", path->name, rays_.size()},
          [=, this] {
-           if (only_decides_) return bvh_.occluded(rays_, *found, filter, many);
-           bvh_.closest(rays_, *hits, filter, many);
+           if (only_decides_) return bvh_.occluded(rays_, *found, rejects_of_batch, many);
+           bvh_.closest(rays_, *hits, rejects_of_batch, many);
            for (std::size_t i = 0; i < rays_.size(); ++i) (*found)[i] = (*hits)[i] ? 1 : 0;
          },
          found_by});

@@ -112,6 +112,16 @@ struct KeptRow {
   bool (*any)(const Tree& tree, const RayOf<T>& ray, const AskedOf<T>& asked);
 };
 
+// Rays whose caller keeps some hits, of the sides that `facing` names, but of the skipped primitives: nearest hits, or
+// whether there are any. ask() is called with up to hits_of_list hits that would be the best so far, of rays by their
+// numbers in the batch, and sets what is 0 to 1 where a hit is rejected. It may be asked again about a hit.
+struct KeptBatch : TraceBatch {
+  void (*ask)(void* function, const std::uint32_t* rays, const Hit* hits, std::uint8_t* rejected,
+              std::size_t count) = nullptr;
+  void* function = nullptr;
+};
+inline constexpr std::size_t hits_of_list = 512;
+
 // Questions of the exact test beyond the nearest hit, of trees of either kind by their nodes; single rays. Lists return
 // how many rays have theirs: fewer than all if there is no room for that of the next one. Rays of list_along_axes are
 // directed along an axis, by ±1 or ±4, from 0 to infinity, and their lists are crossings or sides.
@@ -128,6 +138,8 @@ struct QueryKernels {
   TraversalRow ruled_single, ruled_stream;
   RuledCallRow ruled_call;        // null in the counted row
   KeptRow<TreeView, float> kept;  // null in the counted row
+  // The same by streams, with their scratch. Null in the counted row.
+  void (*kept_together)(const TreeView& tree, const KeptBatch& batch);
   // The nearest hits after the hits in batch.after, in the order of t and then of primitives; null: nearest hits.
   void (*closest_after)(const TreeView& tree, const TraceBatch& batch);
   // Trees without blocks; scratch as streams of so many rays need it.

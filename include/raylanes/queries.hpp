@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <raylanes/mesh.hpp>
@@ -81,8 +82,9 @@ using CrossingD = CrossingOf<double>;
 
 /// A function that rejects hits, a batch at a time: hits[k] is a hit of ray rays[k] of the call. Set rejected[k], which
 /// is 0, to 1 to trace the ray on after this hit.
-/// The calling thread calls it with hits of many rays at a time, one of each. It sees the hits of a ray in order, each
-/// once, up to the one that it keeps. Exceptions pass through.
+/// The calling thread calls it with hits of many rays at a time, one of each, behind the traversal. It sees the hits of
+/// a ray in order, each once, up to the one that it keeps. Exceptions pass through. It is for functions that are dear
+/// to call, as those of Python; a function of a ray and a hit is asked during the traversal, in half the time.
 template <class AnyHit>
 using HitFilterOf = std::function<void(std::span<const std::size_t> rays, std::span<const AnyHit> hits,
                                        std::span<std::uint8_t> rejected)>;
@@ -90,6 +92,34 @@ using HitFilterOf = std::function<void(std::span<const std::size_t> rays, std::s
 using HitFilter = HitFilterOf<Hit>;
 /// A filter of hits of doubles.
 using HitFilterD = HitFilterOf<HitD>;
+
+namespace detail {
+
+// What rejects hits in one call for a batch: a filter, or if that is null a function of lists, which any thread calls.
+template <class AnyHit>
+struct BatchRejection {
+  const HitFilterOf<AnyHit>* filter = nullptr;
+  void (*reject)(void* function, const std::size_t* rays, const AnyHit* hits, std::uint8_t* rejected,
+                 std::size_t count) = nullptr;
+  void* function = nullptr;
+};
+// Calls find(rejection). `rejects` may be any function or object.
+template <class AnyHit, class Rejects, class Find>
+void with_batch_rejection(Rejects& rejects, const Find& find) {
+  const auto ask = [&](const std::size_t* rays, const AnyHit* hits, std::uint8_t* rejected,
+                       std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k)
+      rejected[k] = static_cast<bool>(rejects(rays[k], hits[k])) ? 1 : 0;
+  };
+  using Ask = std::remove_const_t<decltype(ask)>;
+  find(BatchRejection<AnyHit>{
+      nullptr,
+      [](void* function, const std::size_t* rays, const AnyHit* hits, std::uint8_t* rejected,
+         std::size_t count) { (*static_cast<const Ask*>(function))(rays, hits, rejected, count); },
+      const_cast<void*>(static_cast<const void*>(&ask))});
+}
+
+}  // namespace detail
 
 /// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
 /// There must be a mask for each ray of the call and for each triangle of the mesh. The filter keeps both spans, so the

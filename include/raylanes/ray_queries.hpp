@@ -26,14 +26,15 @@ class RayQueries {
   using Options = typename detail::QueryTypes<Tree>::Options;  ///< how rays are traced
 
  protected:
-  using Rays = RayRecords<Ray>;              ///< a view of rays
-  using Columns = RayArraysOf<Number>;       ///< rays as one array per number
-  using Hits = HitRecords<Hit>;              ///< a view of hits to write
-  using Point = PointOf<Number>;             ///< three coordinates
-  using Points = VertexRecords<Number>;      ///< a view of points
-  using Ends = SegmentEndsOf<Number>;        ///< the ends of segments
-  using Filter = HitFilterOf<Hit>;           ///< a filter of batches
-  using Occluded = std::span<std::uint8_t>;  ///< a byte for each ray
+  using Rays = RayRecords<Ray>;                  ///< a view of rays
+  using Columns = RayArraysOf<Number>;           ///< rays as one array per number
+  using Hits = HitRecords<Hit>;                  ///< a view of hits to write
+  using Point = PointOf<Number>;                 ///< three coordinates
+  using Points = VertexRecords<Number>;          ///< a view of points
+  using Ends = SegmentEndsOf<Number>;            ///< the ends of segments
+  using Filter = HitFilterOf<Hit>;               ///< a filter of batches
+  using Rejected = detail::BatchRejection<Hit>;  ///< what rejects hits of a batch
+  using Occluded = std::span<std::uint8_t>;      ///< a byte for each ray
 
  public:
   /// Returns the nearest hit of the ray, or a miss. Ties in t go to the lowest primitive index; in scenes to the lowest
@@ -87,26 +88,62 @@ class RayQueries {
   /// hits. An empty filter rejects nothing.
   template <class Some, std::convertible_to<Filter> Asked>
   void closest(const Some& rays, Hits hits, const Asked& filter, const Options& options = {}) const {
-    filtered_closest(rays, hits, filter, options);
+    const Filter of_lists = filter;
+    filtered_closest(rays, hits, {&of_lists}, options);
+  }
+  /// Finds the nearest hit of each ray for which rejects(i, hit) is false, i being the ray's place in the call.
+  /// rejects() is asked during the search, as in closest() of one ray: in no order of t, perhaps about hits after the
+  /// result and twice about one. If options.threads is not 1, several threads may call it at the same time. It may
+  /// query trees. Its exceptions pass through, and may leave some hits written.
+  template <class Some, std::predicate<std::size_t, const Hit&> Rejects>
+  void closest(const Some& rays, Hits hits, Rejects&& rejects, const Options& options = {}) const {
+    detail::with_batch_rejection<Hit>(
+        rejects, [&](const Rejected& rejected) { filtered_closest(rays, hits, rejected, options); });
   }
   /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0. The filter is
   /// asked about the hits of a ray in no order, perhaps twice about one, until it keeps one.
   template <class Some, std::convertible_to<Filter> Asked>
   void occluded(const Some& rays, Occluded occluded, const Asked& filter, const Options& options = {}) const {
-    filtered_occluded(rays, occluded, filter, options);
+    const Filter of_lists = filter;
+    filtered_occluded(rays, occluded, {&of_lists}, options);
+  }
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit for which rejects(i, hit) is false, else to 0. rejects()
+  /// is asked as in closest() of many rays.
+  template <class Some, std::predicate<std::size_t, const Hit&> Rejects>
+  void occluded(const Some& rays, Occluded occluded, Rejects&& rejects, const Options& options = {}) const {
+    detail::with_batch_rejection<Hit>(
+        rejects, [&](const Rejected& rejected) { filtered_occluded(rays, occluded, rejected, options); });
   }
   /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
   /// The filter is asked as in occluded(), about hits of the ray that begins at points[i].
   template <std::convertible_to<Filter> Asked>
   void occluded_from(const Point& from, Points points, Occluded occluded, const Asked& filter,
                      const Ends& ends = {}, const Options& options = {}) const {
-    filtered_from(from, points, occluded, filter, ends, options);
+    const Filter of_lists = filter;
+    filtered_from(from, points, occluded, {&of_lists}, ends, options);
+  }
+  /// The same for hits for which rejects(i, hit) is false, asked as in closest() of many rays.
+  template <std::predicate<std::size_t, const Hit&> Rejects>
+  void occluded_from(const Point& from, Points points, Occluded occluded, Rejects&& rejects,
+                     const Ends& ends = {}, const Options& options = {}) const {
+    detail::with_batch_rejection<Hit>(rejects, [&](const Rejected& rejected) {
+      filtered_from(from, points, occluded, rejected, ends, options);
+    });
   }
   /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
   template <std::convertible_to<Filter> Asked>
   void occluded_towards(const Point& direction, Points points, Occluded occluded, const Asked& filter,
                         const Options& options = {}) const {
-    filtered_towards(direction, points, occluded, filter, options);
+    const Filter of_lists = filter;
+    filtered_towards(direction, points, occluded, {&of_lists}, options);
+  }
+  /// The same for hits for which rejects(i, hit) is false, asked as in closest() of many rays.
+  template <std::predicate<std::size_t, const Hit&> Rejects>
+  void occluded_towards(const Point& direction, Points points, Occluded occluded, Rejects&& rejects,
+                        const Options& options = {}) const {
+    detail::with_batch_rejection<Hit>(rejects, [&](const Rejected& rejected) {
+      filtered_towards(direction, points, occluded, rejected, options);
+    });
   }
   /// Returns the nearest hit of the ray for which rejects(hit) is false, by TriangleTest::exact.
   /// rejects() is asked during the search about each hit that would be the best so far: in no order of t, perhaps about
@@ -149,14 +186,16 @@ class RayQueries {
   // Without options: the default ones.
   Hit closest_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const Options* options) const;
   bool any_kept(const Ray& ray, const detail::Rejection<Hit>& rejection, const Options* options) const;
-  void filtered_closest(Rays rays, Hits hits, const Filter& filter, const Options& options) const;
-  void filtered_closest(const Columns& rays, Hits hits, const Filter& filter, const Options& options) const;
-  void filtered_occluded(Rays rays, Occluded occluded, const Filter& filter, const Options& options) const;
-  void filtered_occluded(const Columns& rays, Occluded occluded, const Filter& filter,
+  void filtered_closest(Rays rays, Hits hits, const Rejected& rejected, const Options& options) const;
+  void filtered_closest(const Columns& rays, Hits hits, const Rejected& rejected,
+                        const Options& options) const;
+  void filtered_occluded(Rays rays, Occluded occluded, const Rejected& rejected,
                          const Options& options) const;
-  void filtered_from(const Point& from, Points points, Occluded occluded, const Filter& filter,
+  void filtered_occluded(const Columns& rays, Occluded occluded, const Rejected& rejected,
+                         const Options& options) const;
+  void filtered_from(const Point& from, Points points, Occluded occluded, const Rejected& rejected,
                      const Ends& ends, const Options& options) const;
-  void filtered_towards(const Point& direction, Points points, Occluded occluded, const Filter& filter,
+  void filtered_towards(const Point& direction, Points points, Occluded occluded, const Rejected& rejected,
                         const Options& options) const;
 };
 

@@ -2,44 +2,36 @@
 // keep everything that rays meet, so no search is cut short.
 #pragma once
 
-#include "../traverse/streams.hpp"
+#include "gathering_leaves.hpp"
 #include "hit_lists.hpp"
 
 namespace raylanes {
 namespace {
 
-// Entries of lists in any order, a column for each number: the ray; the leaf triangle; the primitive, which takes 28
-// bits, with the sign of the side above.
-struct Heap {
-  std::uint32_t *ray, *leaf_triangle, *primitive;
-  std::size_t size, room;
+// Entries of lists in any order.
+struct Heap : FoundColumns {
   CrossingCount* counts;      // of the rays, which a full heap is added to; null: none
   Facing facing;              // the sides that lists are of
   const std::uint32_t* skip;  // as in ListBatch
   TriangleMasks masks;
   bool is_full = false;
   std::size_t misses_left;  // lanes that may be undecided in vain before rays go one by one
-  static constexpr std::uint32_t sign = 0x80000000u;
 
-  bool put(std::uint32_t number, bool is_against_normal, std::uint32_t triangle, std::uint32_t of_mesh) {
+  bool put(std::uint32_t number, bool is_against_normal, std::uint32_t triangle,
+           std::uint32_t primitive_of_mesh) {
     if (size == room) [[unlikely]]
       overflow();
     if (is_full) return false;
     ray[size] = number, leaf_triangle[size] = triangle;
-    primitive[size++] = of_mesh | (is_against_normal ? sign : 0u);
+    primitive[size++] = primitive_of_mesh | (is_against_normal ? sign : 0u);
     return true;
   }
-  // Adds the hits of a vector of rays: the side is against the normal where the bits of `against` have the sign. If
-  // less than a vector is left, this heap is full.
+  // As append(). If less than a register is left, this heap is full.
   void put(FloatMask<stream_lanes> lanes, StreamBits numbers, StreamBits against, std::uint32_t triangle,
-           std::uint32_t of_mesh) {
+           std::uint32_t primitive_of_mesh) {
     if (room - size < std::size_t{stream_lanes}) [[unlikely]]
       overflow();
-    if (is_full) return;
-    compress_store(ray + size, lanes, numbers);
-    compress_store(leaf_triangle + size, lanes, StreamBits(triangle));
-    size += static_cast<std::size_t>(
-        compress_store(primitive + size, lanes, StreamBits(of_mesh) | (against & StreamBits(sign))));
+    if (!is_full) append(lanes, numbers, against, triangle, primitive_of_mesh);
   }
   // Leaves out entries that do not count, which rays together put there.
   void keep_admitted() {
@@ -54,15 +46,14 @@ struct Heap {
   // Empties a heap of sides into the counts.
   [[gnu::noinline]] void add_to_counts() {
     keep_admitted();
-    for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], (primitive[k] & sign) != 0);
+    for (std::size_t k = 0; k < size; ++k) add_side(counts[ray[k]], side(k) < 0);
     size = 0;
   }
 
  private:
   bool admits_entry(std::size_t k) const {
-    const std::uint32_t of_mesh = primitive[k] & ~sign;
-    if ((skip != nullptr && skip[ray[k]] == of_mesh) || !masks.see(of_mesh)) return false;
-    return raylanes::admits(facing, (primitive[k] & sign) != 0 ? -1 : 1);
+    if ((skip != nullptr && skip[ray[k]] == of_mesh(k)) || !masks.see(of_mesh(k))) return false;
+    return raylanes::admits(facing, side(k));
   }
   void overflow() {
     if (counts != nullptr)
@@ -92,20 +83,14 @@ struct HeapBatch : TraceBatch {
 
 // As StreamLeaves.
 template <class Test, class Counters>
-class ListLeaves : public StreamOctant<Counters> {
-  using Base = StreamOctant<Counters>;
-  using Base::counters, Base::farthest_, Base::needs_, Base::rays_, Base::tree_;
+class ListLeaves : public GatheringLeaves<ListLeaves<Test, Counters>, Test, Counters> {
+  using Base = GatheringLeaves<ListLeaves, Test, Counters>;
+  using Base::counters, Base::rays_, Base::tree_;
+  friend Base;
 
  public:
   ListLeaves(const TreeView& tree, const HeapBatch& batch)
-      : Base(Base::template calls_of<ListLeaves>,
-             {.only_decides = false,
-              .shortens_rays = false,
-              .packs_rays = true,
-              .packs_lengths = true,
-              .packs_numbers = true,
-              .scale = screen_scale<Test>(tree.bounds)},
-             tree, batch),
+      : Base({.only_decides = false, .shortens_rays = false, .packs_numbers = true}, tree, batch),
         batch_(batch) {}
 
   void begin() {}
@@ -129,40 +114,22 @@ class ListLeaves : public StreamOctant<Counters> {
   }
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
-    if (batch_.heap->misses_left == 0) [[unlikely]]
-      return;
-    const LeafBlock<9>& block = leaf_block<Test>(tree_, leaf);
-    const int triangles = leaf_size(leaf);
-    counters().leaf();
-    const LeafScreen screen(block, triangles, farthest_, needs_.scale);
-    for (std::uint32_t i = 0; i < size; i += stream_lanes) {
-      const void *rows[stream_lanes], *ends[stream_lanes];
-      for (int lane = 0; lane < stream_lanes; ++lane) {
-        const std::uint32_t ray = index_of(list[i + static_cast<std::uint32_t>(lane)]);
-        rows[lane] = rays_.packed + ray, ends[lane] = rays_.rows[ray].half();
-      }
-      StreamFloats packed[row_floats], columns[4];
-      load_rows(rows, packed), load_rows(ends, columns);
-      const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
-      const Segment<StreamFloats, true> segment{columns[2], columns[3]};
-      const StreamBits numbers = as<std::uint32_t>(packed[free_column]);
-      const auto going = FloatMask<stream_lanes>::first(size - i < stream_lanes ? size - i : stream_lanes);
-      for (int triangle = 0; triangle < triangles; ++triangle) {
-        counters().triangles(bits(going));
-        const auto verdict = screen.classify(rays, packed[6], triangle, segment);
-        const auto certain = verdict.certain & going, undecided = verdict.undecided & going;
-        counters().hits(bits(certain)), counters().undecided(bits(undecided));
-        const std::uint32_t leaf_triangle = leaf_triangle_of(leaf, triangle);
-        // Without a branch: half of the registers have a hit, and nothing foretells which.
-        batch_.heap->put(certain, numbers, as<std::uint32_t>(-verdict.det), leaf_triangle,
-                         block.primitive[triangle]);
-        if (any(undecided)) [[unlikely]]
-          put_undecided(bits(undecided), list + i, leaf_triangle);
-      }
-    }
+    this->gather(leaf, list, size);
   }
 
  private:
+  bool make_room() const { return batch_.heap->misses_left != 0; }
+  static Segment<StreamFloats, true> segment(const StreamFloats (&)[row_floats],
+                                             const StreamFloats (&ends)[4]) {
+    return {ends[2], ends[3]};
+  }
+  static StreamBits names(const StreamFloats (&packed)[row_floats], const ListEntry*) {
+    return as<std::uint32_t>(packed[free_column]);
+  }
+  void put(FloatMask<stream_lanes> lanes, StreamBits numbers, StreamBits against, std::uint32_t leaf_triangle,
+           std::uint32_t primitive) {
+    batch_.heap->put(lanes, numbers, against, leaf_triangle, primitive);
+  }
   [[gnu::noinline]] void put_undecided(std::uint32_t undecided, const ListEntry* list,
                                        std::uint32_t leaf_triangle) {
     Heap& heap = *batch_.heap;
@@ -196,9 +163,8 @@ inline std::size_t list_scratch_bytes(std::size_t rays, std::size_t room) {
     batch.end[i] = begin;
   }
   for (std::size_t k = 0; k < heap.size; ++k) {
-    const std::int16_t side = (heap.primitive[k] & Heap::sign) != 0 ? -1 : 1;
-    batch.list[batch.end[heap.ray[k]]++] = {0, heap.leaf_triangle[k], heap.primitive[k] & ~Heap::sign, side,
-                                            0};
+    const auto side = static_cast<std::int16_t>(heap.side(k));
+    batch.list[batch.end[heap.ray[k]]++] = {0, heap.leaf_triangle[k], heap.of_mesh(k), side, 0};
   }
 }
 
@@ -208,11 +174,7 @@ template <class Counters>
   using Test = Exact<Grade::reproducible>;
   auto* const words =
       reinterpret_cast<std::uint32_t*>(static_cast<std::byte*>(batch.scratch) + stream_bytes(batch.size));
-  Heap heap{words,
-            words + batch.room,
-            words + 2 * batch.room,
-            0,
-            batch.room,
+  Heap heap{{words, words + batch.room, words + 2 * batch.room, 0, batch.room},
             batch.counts,
             batch.facing,
             batch.skip,

@@ -6,6 +6,7 @@
 #include "axis_ray.hpp"
 #include "hit_after.hpp"
 #include "hit_lists.hpp"
+#include "kept_streams.hpp"
 #include "list_streams.hpp"
 #include "spheres_in_tree.hpp"
 #include "visit_packets.hpp"
@@ -34,6 +35,7 @@ constexpr AllQueryKernels all_queries() {
                                 any_stream<ExactTest, NoCounters, HitRule>, OctantScratch::bytes};
   kernels.plain.ruled_call = {closest_by_rule<ExactTest>, any_by_rule<ExactTest>, nearer_by_rule<ExactTest>};
   kernels.plain.kept = {closest_kept, any_kept};
+  kernels.plain.kept_together = kept_together;
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   kernels.plain.visit_ray = visit_ray;

@@ -65,22 +65,7 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
     return beside > max_beside;
   }
 
- private:
-  // Asks about a hit that counts, if its triangle is one to ask about, and keeps it if it is not rejected.
-  bool take(const HitOf<T>& hit, const TriangleMasks& masks) {
-    const bool is_rejected =
-        asked.rejects != nullptr && masks.may_reject(hit.primitive) && asked.rejects(asked.function, hit);
-    if (is_rejected) return false;
-    best = hit, this->end_at(hit.t);
-    return true;
-  }
-  static int nearest_of(std::uint32_t lanes, const T* t_lo) {
-    int nearest = std::countr_zero(lanes);
-    for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1)
-      if (const int lane = std::countr_zero(lanes); t_lo[lane] < t_lo[nearest]) nearest = lane;
-    return nearest;
-  }
-
+  // A triangle that floats are certain of, or not. True ends the search.
   template <class Triangles>
   [[gnu::noinline]] bool look_at(const Triangles& triangles, std::uint32_t leaf_triangle, bool is_certain) {
     HitOf<T> hit;
@@ -102,6 +87,23 @@ class KeptHit : public std::conditional_t<first_one, AsStored, NearestFirst>, pu
     if (has_ended) beside = 0;
     return has_ended;
   }
+
+ private:
+  // Asks about a hit that counts, if its triangle is one to ask about, and keeps it if it is not rejected.
+  bool take(const HitOf<T>& hit, const TriangleMasks& masks) {
+    const bool is_rejected =
+        asked.rejects != nullptr && masks.may_reject(hit.primitive) && asked.rejects(asked.function, hit);
+    if (is_rejected) return false;
+    best = hit, this->end_at(hit.t);
+    return true;
+  }
+  static int nearest_of(std::uint32_t lanes, const T* t_lo) {
+    int nearest = std::countr_zero(lanes);
+    for (lanes &= lanes - 1; lanes != 0; lanes &= lanes - 1)
+      if (const int lane = std::countr_zero(lanes); t_lo[lane] < t_lo[nearest]) nearest = lane;
+    return nearest;
+  }
+
   template <class Triangles>
   bool is_of_side(const Triangles& triangles, std::uint32_t leaf_triangle) const {
     return asked.facing == Facing::any || admits(asked.facing, side_of(triangles, ray_, leaf_triangle));

@@ -28,6 +28,8 @@ namespace raylanes {
 // and where trees say in which part of them a ray is hit
 //   find_parts(rays, parts, options), hits_in_parts(rays, parts, some, hits, options)
 //                                            as in filters/found_parts.hpp; false if there are no parts
+// and where kernels of batches ask a caller about hits
+//   keep(rays, sink, rejected, options)      as in filters/kept_rays.hpp; false: rays are to go one by one
 template <class Tree>
 class RayDoor;
 
@@ -146,42 +148,43 @@ bool RayQueries<Tree>::any_kept(const Ray& ray, const detail::Rejection<Hit>& re
 }
 
 template <class Tree>
-void RayQueries<Tree>::filtered_closest(Rays rays, Hits hits, const Filter& filter,
+void RayQueries<Tree>::filtered_closest(Rays rays, Hits hits, const Rejected& rejected,
                                         const Options& options) const {
   const RayDoor<Tree> door(self());
-  FilteredCall<Tree>(door, filter, options).closest(source_of(rays, options), hits);
+  FilteredCall<Tree>(door, rejected, options).closest(source_of(rays, options), hits);
 }
 template <class Tree>
-void RayQueries<Tree>::filtered_closest(const Columns& rays, Hits hits, const Filter& filter,
+void RayQueries<Tree>::filtered_closest(const Columns& rays, Hits hits, const Rejected& rejected,
                                         const Options& options) const {
   const RayDoor<Tree> door(self());
-  FilteredCall<Tree>(door, filter, options).closest(source_of(rays, options), hits);
+  FilteredCall<Tree>(door, rejected, options).closest(source_of(rays, options), hits);
 }
 template <class Tree>
-void RayQueries<Tree>::filtered_occluded(Rays rays, Occluded occluded, const Filter& filter,
+void RayQueries<Tree>::filtered_occluded(Rays rays, Occluded occluded, const Rejected& rejected,
                                          const Options& options) const {
   const RayDoor<Tree> door(self());
-  FilteredCall<Tree>(door, filter, options).occluded(source_of(rays, options), occluded);
+  FilteredCall<Tree>(door, rejected, options).occluded(source_of(rays, options), occluded);
 }
 template <class Tree>
-void RayQueries<Tree>::filtered_occluded(const Columns& rays, Occluded occluded, const Filter& filter,
+void RayQueries<Tree>::filtered_occluded(const Columns& rays, Occluded occluded, const Rejected& rejected,
                                          const Options& options) const {
   const RayDoor<Tree> door(self());
-  FilteredCall<Tree>(door, filter, options).occluded(source_of(rays, options), occluded);
+  FilteredCall<Tree>(door, rejected, options).occluded(source_of(rays, options), occluded);
 }
 template <class Tree>
 void RayQueries<Tree>::filtered_from(const Point& from, Points points, Occluded occluded,
-                                     const Filter& filter, const Ends& ends, const Options& options) const {
+                                     const Rejected& rejected, const Ends& ends,
+                                     const Options& options) const {
   const RayDoor<Tree> door(self());
   const SegmentsOf<Number> segments{from, points, ends};
-  FilteredCall<Tree>(door, filter, options).occluded(source_of(segments, options), occluded);
+  FilteredCall<Tree>(door, rejected, options).occluded(source_of(segments, options), occluded);
 }
 template <class Tree>
 void RayQueries<Tree>::filtered_towards(const Point& direction, Points points, Occluded occluded,
-                                        const Filter& filter, const Options& options) const {
+                                        const Rejected& rejected, const Options& options) const {
   const RayDoor<Tree> door(self());
   const SegmentsOf<Number> segments{direction, points, {}, true};
-  FilteredCall<Tree>(door, filter, options).occluded(source_of(segments, options), occluded);
+  FilteredCall<Tree>(door, rejected, options).occluded(source_of(segments, options), occluded);
 }
 
 }  // namespace raylanes

@@ -5,13 +5,15 @@
 
 #include "../../batch/triangle_masks.hpp"
 #include "../after.hpp"
+#include "kept_rays.hpp"
 
 namespace raylanes {
 
 template <class Tree>
 class RayDoor;
 
-// A batch whose hits a filter turns down. Hits after those turned down come from lists, where there are some.
+// A batch whose hits a filter turns down: behind the traversal, if it takes lists. Hits after those turned down come
+// from lists, where there are some.
 template <class Tree>
 class FilteredCall {
   using Number = typename RayQueries<Tree>::Number;
@@ -20,27 +22,36 @@ class FilteredCall {
   using Source = RaySourceOf<Number>;
 
  public:
-  FilteredCall(const RayDoor<Tree>& door, const HitFilterOf<Hit>& filter, const Options& options)
-      : door_(door), filter_(filter), options_(options) {}
+  FilteredCall(const RayDoor<Tree>& door, const detail::BatchRejection<Hit>& rejected, const Options& options)
+      : door_(door), rejected_(rejected), options_(options) {}
 
   void closest(const Source& rays, const HitRecords<Hit>& hits) const {
     const CheckedCall checked(door_.name, rays, hits, options_);
-    find(checked.rays, hits, filter_, checked.options);
+    if (is_asked_within()) return keep(checked.rays, HitSink<Hit>{hits}, checked.options);
+    find(checked.rays, hits, filter(), checked.options);
   }
   void occluded(const Source& rays, std::span<std::uint8_t> occluded) const {
-    if (!filter_) return door_.trace(rays, occluded, options_);
+    if (!is_asked_within() && !filter()) return door_.trace(rays, occluded, options_);
     Options by = options_;  // with the sides that the rays see
     if constexpr (requires { by.facing; }) by.facing = rays.sides(by.facing);
     const CheckedCall checked(door_.name, rays, occluded, by);
     by = checked.options, by.after = {};  // of closest() only
+    if (is_asked_within()) return keep(checked.rays, SpanSink<std::uint8_t>{occluded}, by);
     if (!counts(by) && !share_origin(checked.rays)) return decide(checked.rays, occluded, by);
     std::vector<Hit> hits(rays.size());
-    find(checked.rays, hits, filter_, by);
+    find(checked.rays, hits, filter(), by);
     for (std::size_t i = 0; i < hits.size(); ++i)
       if (checked.rays.takes_part(i)) occluded[i] = hits[i] ? 1 : 0;
   }
 
  private:
+  bool is_asked_within() const { return rejected_.filter == nullptr; }
+  const HitFilterOf<Hit>& filter() const { return *rejected_.filter; }
+  template <class Sink>
+  void keep(const Source& rays, const Sink& sink, const Options& by) const {
+    door_.require_order(by);
+    keep_rays(door_, rays, sink, rejected_, by);
+  }
   static bool counts(const Options& by) {
     if constexpr (requires { by.counters; }) return by.counters != nullptr;
     return false;
@@ -102,7 +113,7 @@ class FilteredCall {
                                         std::span<std::uint8_t> rejected) {
       in_batch.clear();
       for (const std::size_t k : indices) in_batch.push_back(open[k]);
-      filter_(in_batch, found, rejected);
+      this->filter()(in_batch, found, rejected);
     };
     std::vector<Hit> hits(open.size());
     find({.records = some, .skip = skips}, hits, filter, of_some);
@@ -111,7 +122,7 @@ class FilteredCall {
   void ask_about(const std::vector<Hit>& hits, std::vector<std::size_t>& open,
                  std::span<std::uint8_t> decided, const Options& by) const {
     const MayReject may_reject{masks_of(by)};
-    Asking<HitFilterOf<Hit>> ask{filter_};
+    Asking<HitFilterOf<Hit>> ask{filter()};
     std::vector<std::size_t> indices, left;
     std::vector<Hit> found;
     for (std::size_t k = 0; k < open.size();) {
@@ -155,7 +166,7 @@ class FilteredCall {
   }
 
   const RayDoor<Tree>& door_;
-  const HitFilterOf<Hit>& filter_;
+  const detail::BatchRejection<Hit>& rejected_;
   const Options& options_;
 };
 

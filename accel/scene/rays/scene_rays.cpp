@@ -155,6 +155,14 @@ struct BatchOfCommon {
   TracedTree traced() const { return TreeAccess::traced(*tree.geometry->triangles()); }
 };
 
+// Hits of a common tree as its scene's.
+struct AsHitOfScene {
+  using Seen = SceneHit;
+  TriangleOwners owners;
+
+  SceneHit operator()(const Hit& hit) const { return owners.spread(hit); }
+};
+
 // Lists of hits where a common tree has all that the mask sees.
 struct ListsOfCommon {
   static constexpr bool have_streams = true;
@@ -263,6 +271,18 @@ class RayDoor<Scene> {
     std::ranges::transform(in_tree, hits.begin(), [&](const Hit& hit) { return numbers.owners.spread(hit); });
   }
 
+  // Where rays see no more than a common tree.
+  template <class Sink>
+  bool keep(const RaySource& rays, const Sink& sink, const detail::BatchRejection<SceneHit>& rejected,
+            const TraceOptions& by) const {
+    checked_query(parts_, by);
+    const CommonTree* const tree = quick_tree(parts_, by.mask);
+    const bool names_instance = by.skip.first == nullptr || by.skip.to_instance != 0;
+    if (tree == nullptr || !names_instance || by.after.first != nullptr) return false;
+    const BatchOfCommon batch(*tree, rays, by);
+    return keep_in_tree(batch.traced(), batch.rays, sink, rejected, batch.options,
+                        AsHitOfScene{tree->numbers().owners});
+  }
   static void require_order(const TraceOptions& options) { require_exact_in_scene(options); }
   ListsOfCommon lists(const TraceOptions& options) const { return {quick_tree(parts_, options.mask)}; }
   SceneHit closest_kept(const Ray& ray, const detail::Rejection<SceneHit>& rejection,

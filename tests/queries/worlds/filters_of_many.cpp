@@ -85,6 +85,13 @@ void expect_kept(const Tree& tree, const std::vector<AnyRay>& rays, const Case& 
   in_order = false;
   tree.occluded(rays, occluded, filter, options);
   EXPECT_EQ(wrong, 0u);
+  const auto rejects = [&](std::size_t ray, const AnyHit& hit) { return !of.keeps(ray, layer_of(hit)); };
+  std::vector<AnyHit> within(n);
+  std::vector<std::uint8_t> occluded_within(n, 7);
+  tree.closest(rays, within, rejects, options);
+  tree.occluded(rays, occluded_within, rejects, options);
+  EXPECT_TRUE(same_bytes(within, hits));
+  EXPECT_EQ(occluded_within, occluded);
   for (std::size_t i = 0; i < n; i += 3) {
     Options alone = options;
     if (!skip.empty()) alone.skip = skip[i];
