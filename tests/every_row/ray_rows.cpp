@@ -48,6 +48,42 @@ void check_kept(EveryRow& every, const KeptRow<View, T>& row, const View& tree) 
   expect_recorded(number_name<T> + std::string("kept"), hash, "kept");
 }
 
+// Batches whose caller does the same.
+struct RejectedByStreams {
+  const QueryKernels& kernels;
+  const TreeView& tree;
+  std::uint32_t divisor;  // 0: no hit is rejected
+
+  static void ask(void* self, const std::uint32_t*, const Hit* hits, std::uint8_t* rejected,
+                  std::size_t count) {
+    const std::uint32_t by = static_cast<const RejectedByStreams*>(self)->divisor;
+    EXPECT_TRUE(count > 0 && count <= hits_of_list);
+    for (std::size_t k = 0; k < count; ++k) rejected[k] = by != 0 && hits[k].primitive % by == 0 ? 1 : 0;
+  }
+  void operator()(const TraceBatch& batch) {
+    KeptBatch nearest{batch, ask, this};
+    const std::size_t bytes = kernels.ruled_stream.scratch_bytes(batch.size);
+    Scratch scratch(Scratch::bytes_of<std::byte>(bytes));
+    nearest.scratch = scratch.take<std::byte>(bytes);
+    KeptBatch whether = nearest;
+    nearest.occluded = nullptr, whether.hits = nullptr;
+    kernels.kept_together(tree, nearest), kernels.kept_together(tree, whether);
+  }
+};
+void check_kept_together(EveryRow& every, const QueryKernels& kernels, const TreeView& tree) {
+  if (!every.offers(kernels.kept_together)) return;
+  for (const std::uint32_t divisor : {2u, 3u, 0u}) {
+    RejectedByStreams together{kernels, tree, divisor};
+    const Tracer<float> trace = [&](const TraceBatch& batch) { together(batch); };
+    if (divisor == 0)
+      expect_hits<float>("chosen", Rules::chosen, trace, "kept together");
+    else
+      EXPECT_EQ(hash_of_hits(trace, Rules::chosen).value(),
+                hash_of_hits(by_kept_row<float>(kernels.kept, tree, divisor), Rules::chosen).value())
+          << divisor;
+  }
+}
+
 // --- Lists, each ray's in the order of primitives.
 template <class T>
 using Lister = std::size_t (*)(const TreeViewOf<T>& tree, const ListBatchOf<T>& batch);
@@ -181,6 +217,7 @@ void check_queries(EveryRow& every, const QueryKernels& kernels, const Traversal
         "packets");
   }
   check_kept<float>(every, kernels.kept, tree);
+  check_kept_together(every, kernels, tree);
   if (every.offers(kernels.closest_after))
     expect_hits<float>("behind", Rules::behind, by_batches<float>(tree, kernels.closest_after, nullptr),
                        way + "next", counts);
