@@ -79,9 +79,25 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
   return part;
 }
 
+// Whether packets take less time than rays one by one, as measured: rays are as dense as primitives, or half of the
+// neighbours of a sample hit the same one.
+bool packets_pay(const BoundedTreeArrays& tree, const LeafCallback& test, const GeometryBatch& batch) {
+  if (tree.size <= 8 * batch.size) return true;
+  const std::size_t pairs = std::clamp<std::size_t>(batch.size / 128, 8, 32), step = batch.size / pairs | 1;
+  std::size_t hit = 0, together = 0;
+  for (std::size_t i = 0; i + 1 < batch.size; i += step) {
+    test.alone(test.context, part_of(batch, i, 2));
+    const Hit &a = batch.hits[i], &b = batch.hits[i + 1];
+    hit += a || b ? 1 : 0, together += a && a.primitive == b.primitive ? 1 : 0;
+  }
+  return 2 * together >= hit;
+}
+
 void visit_part(const BoundedTreeArrays& tree, const QueryKernels& row, const LeafCallback& test,
                 const GeometryBatch& batch, bool share_origin, void* scratch) {
   // Rays that meet many boxes find their hits soonest if each goes to its nearest leaf first.
+  if (test.alone != nullptr && batch.hits != nullptr && !(share_origin && packets_pay(tree, test, batch)))
+    return test.alone(test.context, batch);
   if (tree.overlaps && !share_origin && batch.hits != nullptr && batch.counters == nullptr) {
     for (std::size_t i = 0; i < batch.size; ++i) VisitOfOne{tree, test, part_of(batch, i, 1)}.trace(row);
     return;

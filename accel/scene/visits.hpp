@@ -10,11 +10,6 @@
 
 namespace raylanes {
 
-struct LeafCallback {
-  LeafFunction visit;
-  void* context;
-};
-
 // Rays and their answers: hits or occluded, the other is null. tmax, where it is given: what boxes may not begin
 // behind, else the rays' own; it is not changed.
 struct GeometryBatch {
@@ -32,6 +27,14 @@ struct GeometryBatch {
   const AskedOf<float>* asked =
       nullptr;               // not null: of one ray whose caller rejects hits; it says all the rest
   TriangleMasks masks = {};  // by rows with a rule
+};
+
+// What tests the primitives of leaves; and, if that is not null, what finds the nearest hits of rays one by one, sooner
+// than together if they share no origin, or neighbours hit little together.
+struct LeafCallback {
+  LeafFunction visit;
+  void* context;
+  void (*alone)(void* context, const GeometryBatch& batch) = nullptr;
 };
 
 // On this thread. All answers are set.

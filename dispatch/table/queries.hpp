@@ -93,6 +93,18 @@ struct SphereQuery {
   TraceCounters* counters = nullptr;  // of the counted row
 };
 
+// Some rays at a leaf of spheres: rays by their numbers in arrays of rays, and of their hits so far, or whether they are
+// occluded; the other one is null.
+struct SphereVisit {
+  std::uint32_t first, size;  // spheres, at most a leaf's
+  const std::uint32_t* numbers;
+  std::size_t count;
+  const Ray* rays;
+  Hit* hits;
+  std::uint8_t* occluded;
+  const std::uint32_t* skip;  // for each ray what it skips, as in SphereQuery; null: nothing
+};
+
 // A search of one ray whose caller keeps some hits, of the sides that `facing` names, but of the skipped primitive, by
 // t and then by primitives. The function is asked about each of these that would be the best so far. If the tree has a
 // triangle in several leaves, it may be asked again.
@@ -151,6 +163,8 @@ struct QueryKernels {
   // One ray among spheres; tree.origin_share is the slack of their test.
   Hit (*closest_sphere)(const TreeView& tree, const SphereLeaves& spheres, const Ray& ray,
                         const SphereQuery& asked);
+  // Valid rays among the spheres of a leaf: what they hit replaces hits behind it. Null in the counted row.
+  void (*visit_spheres)(const SphereLeaves& spheres, const SphereVisit& leaf);
 };
 struct AllQueryKernels {
   QueryKernels plain, counted;  // counted: null where the build was asked for no counters

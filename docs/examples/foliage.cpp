@@ -48,10 +48,7 @@ int main(int, char** arguments) {
   append_floor(mesh, 12, -0.9f);
   words.resize(mesh.triangles.size(), solid);
   const raylanes::Bvh bvh(mesh);
-  const auto cut = [](std::span<const std::size_t>, std::span<const raylanes::Hit> hits,
-                      std::span<std::uint8_t> rejected) {
-    for (std::size_t k = 0; k < hits.size(); ++k) rejected[k] = is_open(hits[k]) ? 1 : 0;
-  };
+  const auto cut = [](std::size_t, const raylanes::Hit& hit) { return is_open(hit); };
 
   constexpr std::size_t width = 1600, height = 1000;  // twice the picture's size
   const std::vector<raylanes::Ray> rays = camera_rays(width, height);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -95,6 +96,11 @@ using HitFilterD = HitFilterOf<HitD>;
 
 namespace detail {
 
+// A filter of batches, but not one that is asked during the search.
+template <class Asked, class AnyHit>
+concept FiltersLists = std::convertible_to<Asked, HitFilterOf<AnyHit>> &&
+    (!std::predicate<const Asked&, std::size_t, const AnyHit&>);
+
 // What rejects hits in one call for a batch: a filter, or if that is null a function of lists, which any thread calls.
 template <class AnyHit>
 struct BatchRejection {
@@ -121,22 +127,34 @@ void with_batch_rejection(Rejects& rejects, const Find& find) {
 
 }  // namespace detail
 
+/// Rejects hits where the masks of ray and triangle have no bit in common: during the search, or as a HitFilter.
+struct MaskFilter {
+  std::span<const std::uint32_t> of_rays;       ///< a mask for each ray of the call
+  std::span<const std::uint32_t> of_triangles;  ///< and for each triangle of the mesh
+
+  /// Whether a hit of a ray is rejected.
+  bool operator()(std::size_t ray, const Hit& hit) const {
+    return (of_rays[ray] & of_triangles[hit.primitive]) == 0;
+  }
+  /// The same as a HitFilter.
+  void operator()(std::span<const std::size_t> rays, std::span<const Hit> hits,
+                  std::span<std::uint8_t> rejected) const {
+    for (std::size_t k = 0; k < rays.size(); ++k) rejected[k] = (*this)(rays[k], hits[k]) ? 1 : 0;
+  }
+};
 /// Returns a filter that keeps a hit if the masks of ray and triangle have a bit in common.
 /// There must be a mask for each ray of the call and for each triangle of the mesh. The filter keeps both spans, so the
 /// masks must outlive the filter. If all rays have one mask, TraceOptions::masks does the same in the walk.
-inline HitFilter mask_filter(std::span<const std::uint32_t> of_rays,
-                             std::span<const std::uint32_t> of_triangles) {
-  return [=](std::span<const std::size_t> rays, std::span<const Hit> hits, std::span<std::uint8_t> rejected) {
-    for (std::size_t k = 0; k < rays.size(); ++k)
-      rejected[k] = (of_rays[rays[k]] & of_triangles[hits[k].primitive]) == 0 ? 1 : 0;
-  };
+inline MaskFilter mask_filter(std::span<const std::uint32_t> of_rays,
+                              std::span<const std::uint32_t> of_triangles) {
+  return {of_rays, of_triangles};
 }
 
 /// Does not compile: the filter would keep a view of a temporary.
 template <class Rays, class Triangles>
-HitFilter mask_filter(Rays&& of_rays,
-                      Triangles&& of_triangles) requires(detail::OwningTemporary<Rays> ||
-                                                         detail::OwningTemporary<Triangles>) = delete;
+MaskFilter mask_filter(Rays&& of_rays,
+                       Triangles&& of_triangles) requires(detail::OwningTemporary<Rays> ||
+                                                          detail::OwningTemporary<Triangles>) = delete;
 
 /// The location of a point. Triangles without an area hold no point.
 enum class Location : std::uint8_t {

@@ -86,7 +86,7 @@ class RayQueries {
   /// arrays, as in closest() of many rays.
   /// The filter is called with batches of hits; rejected rays are traced on after their hit. All modes return the same
   /// hits. An empty filter rejects nothing.
-  template <class Some, std::convertible_to<Filter> Asked>
+  template <class Some, detail::FiltersLists<Hit> Asked>
   void closest(const Some& rays, Hits hits, const Asked& filter, const Options& options = {}) const {
     const Filter of_lists = filter;
     filtered_closest(rays, hits, {&of_lists}, options);
@@ -102,7 +102,7 @@ class RayQueries {
   }
   /// Sets occluded[i] to 1 if the segment of ray i has a hit that the filter does not reject, else to 0. The filter is
   /// asked about the hits of a ray in no order, perhaps twice about one, until it keeps one.
-  template <class Some, std::convertible_to<Filter> Asked>
+  template <class Some, detail::FiltersLists<Hit> Asked>
   void occluded(const Some& rays, Occluded occluded, const Asked& filter, const Options& options = {}) const {
     const Filter of_lists = filter;
     filtered_occluded(rays, occluded, {&of_lists}, options);
@@ -116,7 +116,7 @@ class RayQueries {
   }
   /// Sets occluded[i] to 1 if the segment from `from` to points[i] has a hit that the filter keeps, else to 0.
   /// The filter is asked as in occluded(), about hits of the ray that begins at points[i].
-  template <std::convertible_to<Filter> Asked>
+  template <detail::FiltersLists<Hit> Asked>
   void occluded_from(const Point& from, Points points, Occluded occluded, const Asked& filter,
                      const Ends& ends = {}, const Options& options = {}) const {
     const Filter of_lists = filter;
@@ -131,7 +131,7 @@ class RayQueries {
     });
   }
   /// Sets occluded[i] to 1 if the ray from points[i] in that direction has a hit that the filter keeps, else to 0.
-  template <std::convertible_to<Filter> Asked>
+  template <detail::FiltersLists<Hit> Asked>
   void occluded_towards(const Point& direction, Points points, Occluded occluded, const Asked& filter,
                         const Options& options = {}) const {
     const Filter of_lists = filter;

@@ -8,7 +8,7 @@
 #include "hit_lists.hpp"
 #include "kept_streams.hpp"
 #include "list_streams.hpp"
-#include "spheres_in_tree.hpp"
+#include "rays_at_spheres.hpp"
 #include "visit_packets.hpp"
 
 namespace raylanes {
@@ -39,6 +39,7 @@ constexpr AllQueryKernels all_queries() {
   kernels.plain.list_together = list_together<NoCounters>;
   kernels.plain.scratch_bytes = list_scratch_bytes;
   kernels.plain.visit_ray = visit_ray;
+  kernels.plain.visit_spheres = visit_spheres;
   if constexpr (RAYLANES_COUNTERS) {
     kernels.counted = kernels_with<CountTests>();
     kernels.counted.ruled_single = {kernels.counted.closest_after,

@@ -29,8 +29,8 @@ class SpheresOfRay {
   SpheresOfRay(const SphereLeaves& spheres, const Ray& ray, const SphereQuery& asked)
       : spheres_(spheres), ray_(scaled(ray)), asked_(asked), tmin_(ray.tmin), tmax_(finite_tmax(ray.tmax)) {}
 
-  bool visit(TreeReference leaf, SphereSearch& search) const {
-    const LeafReference range = leaf_of(leaf);
+  bool visit(TreeReference leaf, SphereSearch& search) const { return visit(leaf_of(leaf), search); }
+  bool visit(const LeafReference& range, SphereSearch& search) const {
     for (std::uint32_t k = 0; k < range.size; k += node_lanes)
       if (visit(range, k, search)) return true;
     return false;

@@ -69,6 +69,43 @@ inline void check_visits_of_rays(EveryRow& every, const QueryKernels& kernels) {
 }
 
 // Spheres in trees of leaves of one and of one leaf of eight, whose rows of numbers are the columns of the test.
+// Some rays at a time at a leaf, against each ray's search in the tree of that leaf.
+inline void check_visits_of_spheres(EveryRow& every, const QueryKernels& kernels, const TreeView& one_leaf,
+                                    const SphereLeaves& spheres, std::uint32_t size) {
+  if (!every.offers(kernels.visit_spheres)) return;
+  std::vector<Ray> rays = some_rays<float>();
+  std::erase_if(rays, [](const Ray& ray) {
+    const auto& [x, y, z] = ray.direction;
+    return !(std::abs(x) + std::abs(y) + std::abs(z) > 0 && ray.tmin <= ray.tmax);
+  });
+  std::vector<std::uint32_t> numbers(rays.size()), skip(rays.size(), no_primitive);
+  std::iota(numbers.rbegin(), numbers.rend(), 0u);
+  for (const bool skips : {false, true})
+    for (const std::size_t together : {std::size_t{1}, std::size_t{2}, std::size_t{5}, rays.size()}) {
+      std::vector<Hit> hits(rays.size());
+      std::vector<std::uint8_t> occluded(rays.size());
+      for (std::size_t k = 0; k < rays.size(); k += together) {
+        SphereVisit leaf{0,
+                         size,
+                         numbers.data() + k,
+                         std::min(together, rays.size() - k),
+                         rays.data(),
+                         hits.data(),
+                         nullptr,
+                         skips ? skip.data() : nullptr};
+        kernels.visit_spheres(spheres, leaf);
+        leaf.hits = nullptr, leaf.occluded = occluded.data();
+        kernels.visit_spheres(spheres, leaf);
+      }
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const SphereQuery asked{.end = rays[i].tmax, .skipped = skips ? skip[i] : no_primitive};
+        EXPECT_TRUE(same_bytes(hits[i], kernels.closest_sphere(one_leaf, spheres, rays[i], asked))) << i;
+        EXPECT_EQ(occluded[i], hits[i] ? 1 : 0) << i;
+        if (!skips) skip[i] = hits[i].primitive;
+      }
+    }
+}
+
 inline void check_spheres(EveryRow& every, const QueryKernels& kernels) {
   if (!every.offers(kernels.closest_sphere)) return;
   constexpr std::size_t count = 8;
@@ -120,6 +157,7 @@ inline void check_spheres(EveryRow& every, const QueryKernels& kernels) {
     }
   }
   EXPECT_GT(hits, 4u);
+  check_visits_of_spheres(every, kernels, one_leaf.view(), {in_one.data(), ascending}, count);
 }
 
 }  // namespace raylanes::testing

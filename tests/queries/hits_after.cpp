@@ -2,9 +2,13 @@
 #include "../support/filtered.hpp"
 #include "../support/same_bytes.hpp"
 #include "query_trees.hpp"
+#include "worlds/worlds.hpp"
 
 namespace raylanes::testing {
 namespace {
+
+template <class T>
+class Predicates : public ::testing::Test {};
 
 // Triangles that a rule leaves out: as if the mesh did not have them.
 TEST(Filters, leave_out_triangles) {
@@ -13,9 +17,8 @@ TEST(Filters, leave_out_triangles) {
   std::vector<std::uint32_t> ray_masks, triangle_masks;
   for (std::uint32_t i = 0; i < rays.size(); ++i) ray_masks.push_back(1u << i % 3 | (i % 7 == 0 ? 8u : 0u));
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) triangle_masks.push_back(i % 16);
-  const HitFilter filter = mask_filter(ray_masks, triangle_masks);
   const std::vector<std::uint8_t> active(rays.size() / 8 + 1, 0xb7);
-  each_tree(mesh, [&](const auto& tree, const Path* path) {
+  const auto check = [&](const auto& tree, const Path* path, const auto& filter) {
     std::vector<Hit> hits(rays.size()), some(rays.size(), Hit{7, 0, 0, 1});
     std::vector<std::uint8_t> occluded(rays.size());
     tree.closest(rays, hits, filter, {.path = path});
@@ -33,6 +36,10 @@ TEST(Filters, leave_out_triangles) {
       found += hits[i] ? 1 : 0;
     }
     EXPECT_GT(found, 5u);
+  };
+  each_tree(mesh, [&](const auto& tree, const Path* path) {
+    check(tree, path, mask_filter(ray_masks, triangle_masks));
+    check(tree, path, HitFilter(mask_filter(ray_masks, triangle_masks)));
   });
 }
 
@@ -111,9 +118,60 @@ TEST(Filters, see_each_hit_once_in_order_and_may_throw) {
   }
   const HitFilter throwing = [](auto...) { throw std::runtime_error("enough"); };
   EXPECT_THROW(bvh.closest(rays, hits, throwing), std::runtime_error);
+  std::vector<std::uint8_t> unwritten(rays.size(), 7);
+  EXPECT_THROW(bvh.occluded(rays, unwritten, throwing), std::runtime_error);
+  EXPECT_EQ(std::ranges::count(unwritten, 7), std::ssize(unwritten));
   bvh.closest(rays, hits, HitFilter());
   EXPECT_TRUE(std::ranges::any_of(hits, [](const Hit& hit) { return bool(hit); }));
   EXPECT_THROW(bvh.closest(rays, hits, throwing, {.test = TriangleTest::watertight}), std::invalid_argument);
+}
+
+// Predicates that query the tree that asks them, on one thread and on two, in batches that go together and one by one.
+TYPED_TEST_SUITE(Predicates, Numbers, NumberNames);
+
+TYPED_TEST(Predicates, may_query_their_tree) {
+  using T = TypeParam;
+  const Mesh mesh = triangle_soup(300, 0.5f, 81);
+  const auto rays = rays_of<T>(aimed_rays(mesh, 5000, 2, 82));
+  const auto some = std::vector(rays.begin(), rays.begin() + 100);
+  each_tree(mesh_of<T>(mesh), [&](const auto& tree, const Path* path) {
+    // Whether the ray of a hit has another triangle behind it.
+    const auto rejects = [&](std::size_t ray, const HitOf<T>& hit) {
+      std::vector<std::uint8_t> any(some.size());
+      if (ray % 64 == 0) tree.occluded(some, any, [](std::size_t, const HitOf<T>&) { return true; });
+      EXPECT_EQ(std::ranges::count(any, 1), 0);
+      return static_cast<bool>(tree.closest(rays[ray], {.path = path, .after = hit}));
+    };
+    for (const int threads : {1, 2}) {
+      std::vector<HitOf<T>> last(rays.size());
+      tree.closest(rays, last, rejects, {.path = path, .threads = threads});
+      for (std::size_t i = 0; i < rays.size(); i += 7) {
+        const auto all = tree.all_hits(std::span(&rays[i], 1), {.path = path});
+        ASSERT_TRUE(same_bytes(last[i], all[0].empty() ? HitOf<T>() : all[0].back())) << i;
+      }
+    }
+  });
+}
+
+TYPED_TEST(Predicates, may_throw) {
+  using T = TypeParam;
+  const Mesh mesh = triangle_soup(300, 0.5f, 83);
+  const auto rays = rays_of<T>(aimed_rays(mesh, 20000, 2, 84));
+  each_tree(mesh_of<T>(mesh), [&](const auto& tree, const Path* path) {
+    std::vector<HitOf<T>> hits(rays.size()), again(rays.size()), all(rays.size());
+    std::vector<std::uint8_t> occluded(rays.size());
+    const auto throws = [](std::size_t ray, const HitOf<T>&) {
+      return ray > 9000 ? throw std::runtime_error("enough") : false;
+    };
+    for (const int threads : {1, 2}) {
+      EXPECT_THROW(tree.closest(rays, hits, throws, {.path = path, .threads = threads}), std::runtime_error);
+      EXPECT_THROW(tree.occluded(rays, occluded, throws, {.path = path, .threads = threads}),
+                   std::runtime_error);
+      tree.closest(rays, again, [](std::size_t, const HitOf<T>&) { return false; }, {.path = path});
+      tree.closest(rays, all, {.path = path});
+      EXPECT_TRUE(same_bytes(again, all));
+    }
+  });
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(SphereTree, has_the_nearest_of_fronts_in_one_place) {
     found += spheres.size();
     const SphereTree tree(spheres);
     const SphereRows rows(spheres);
-    expect_batches(tree, std::vector<Ray>(20, ray), [&](const Ray& r) { return rows.closest(r); });
+    expect_batches(tree, std::vector<Ray>(80, ray), [&](const Ray& r) { return rows.closest(r); });
   }
   EXPECT_GT(found, 10 * by_level(120));
 }

@@ -95,9 +95,12 @@ struct SceneDQuery {
     return skip.first != nullptr ? SkippedPrimitive{skip[i], skip.instance(i)}
                                  : SkippedPrimitive{no_primitive, no_part};
   }
-  // The first hit of a ray, after another one if that is not null; and whether there is any.
-  SceneHitD closest(const RayD& ray, const SkippedPrimitive& skipped, const SceneHitD* after) const;
-  bool any(const RayD& ray, const SkippedPrimitive& skipped) const;
+  // The first hit of a ray, after another one if that is not null; and whether there is any. rejection: what the caller
+  // rejects; null: nothing.
+  SceneHitD closest(const RayD& ray, const SkippedPrimitive& skipped, const SceneHitD* after,
+                    const detail::Rejection<SceneHitD>* rejection = nullptr) const;
+  bool any(const RayD& ray, const SkippedPrimitive& skipped,
+           const detail::Rejection<SceneHitD>* rejection = nullptr) const;
 };
 // Throws as SceneD::closest().
 SceneDQuery checked_query(const SceneDParts& scene, const TraceOptionsD& options);

@@ -88,7 +88,7 @@ class RayDoor<SceneD> {
  public:
   static constexpr const char* name = "scene";
 
-  explicit RayDoor(const SceneD& scene) : scene_(scene), parts_(TreeAccess::parts(scene)) {}
+  explicit RayDoor(const SceneD& scene) : parts_(TreeAccess::parts(scene)) {}
 
   SceneHitD closest(const RayD& ray) const {
     return is_quick() ? quick_query({}).closest(ray, nothing, nullptr) : closest_by(ray, {});
@@ -105,19 +105,21 @@ class RayDoor<SceneD> {
     if (!are_usual) return {};
     return {quick_query(options)};
   }
-  SceneHitD closest_by(const RayD& ray, const TraceOptionsD& options) const {
+  SceneHitD closest_by(const RayD& ray, const TraceOptionsD& options,
+                       const detail::Rejection<SceneHitD>* rejection = nullptr) const {
     require_skip(name, options.skip, 1), require_after(name, options.after, 1);
     const SceneDQuery query = checked_query(parts_, options);
     const QuietFloats quiet;
-    if (options.after.first == nullptr) return query.closest(ray, query.skipped(0), nullptr);
+    if (options.after.first == nullptr) return query.closest(ray, query.skipped(0), nullptr, rejection);
     const SceneHitD last = hit_of_after(options.after, 0);
-    return query.closest(ray, query.skipped(0), &last);
+    return query.closest(ray, query.skipped(0), &last, rejection);
   }
-  bool any_by(const RayD& ray, const TraceOptionsD& options) const {
+  bool any_by(const RayD& ray, const TraceOptionsD& options,
+              const detail::Rejection<SceneHitD>* rejection = nullptr) const {
     require_skip(name, options.skip, 1);
     const SceneDQuery query = checked_query(parts_, without_after(options));
     const QuietFloats quiet;
-    return query.any(ray, query.skipped(0));
+    return query.any(ray, query.skipped(0), rejection);
   }
   void trace(RaySourceOf<double> rays, const SceneHitViewD& hits, const TraceOptionsD& given) const {
     rays.skip = {};  // scenes read that of the options
@@ -149,12 +151,11 @@ class RayDoor<SceneD> {
   ListsOfCommonD lists(const TraceOptionsD& options) const { return {parts_.only(options.mask)}; }
   SceneHitD closest_kept(const RayD& ray, const detail::Rejection<SceneHitD>& rejection,
                          const TraceOptionsD& options) const {
-    return first_kept(rejection, options,
-                      [&](const TraceOptionsD& next) { return scene_.closest(ray, next); });
+    return closest_by(ray, options, &rejection);
   }
   bool any_kept(const RayD& ray, const detail::Rejection<SceneHitD>& rejection,
                 const TraceOptionsD& options) const {
-    return static_cast<bool>(closest_kept(ray, rejection, options));
+    return any_by(ray, options, &rejection);
   }
 
  private:
@@ -183,7 +184,6 @@ class RayDoor<SceneD> {
         });
   }
 
-  const SceneD& scene_;
   const SceneDParts& parts_;
 };
 template class RayQueries<SceneD>;

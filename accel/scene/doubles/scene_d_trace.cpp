@@ -99,16 +99,47 @@ std::uint32_t number_of(const SkippedPrimitive& skipped, const MemberNumbers& nu
   return skipped.primitive != no_primitive ? numbers.of(skipped.instance, skipped.primitive) : no_primitive;
 }
 
-HitD closest_in(const DoubleRayKernels& kernels, const DoubleTreeView& tree, const RayD& ray, Facing facing,
-                std::uint32_t skipped, const HitD* after) {
-  if (after == nullptr) return kernels.closest_of_ray(tree, ray, facing, skipped);
-  HitD hit;
-  DoubleBatch batch;
-  batch.rays = &ray, batch.size = 1, batch.hits = &hit, batch.facing = facing, batch.after = after;
-  if (skipped != no_primitive) batch.skip = &skipped;
-  kernels.closest(tree, batch);
-  return hit;
-}
+// How a ray is searched for in the trees that it comes to: after a hit, and for hits that its caller keeps. null: after
+// none, and all.
+struct SearchD {
+  const SceneDQuery& query;
+  const SkippedPrimitive& skipped;
+  const SceneHitD* after;
+  const detail::Rejection<SceneHitD>* rejection;
+
+  SceneHitD closest(const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& ray) const {
+    const TriangleOwners& owners = numbers.owners;
+    const std::uint32_t skipped_here = number_of(skipped, numbers);
+    if (after == nullptr && rejection == nullptr)
+      return in_scene(query.kernels.closest_of_ray(tree, ray, query.facing, skipped_here), owners);
+    HitD last;
+    if (after != nullptr) last = numbers.after(*after);
+    AskedInTree ask{*this, owners};
+    return in_scene(
+        query.kernels.kept.closest(tree, ray, ask.of(skipped_here, after != nullptr ? &last : nullptr)),
+        owners);
+  }
+  bool any(const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& ray) const {
+    const std::uint32_t skipped_here = number_of(skipped, numbers);
+    if (rejection == nullptr) return query.kernels.any_of_ray(tree, ray, query.facing, skipped_here);
+    AskedInTree ask{*this, numbers.owners};
+    return query.kernels.kept.any(tree, ray, ask.of(skipped_here, nullptr));
+  }
+
+ private:
+  struct AskedInTree {
+    const SearchD& search;
+    const TriangleOwners& owners;
+
+    AskedOf<double> of(std::uint32_t skipped, const HitD* after) {
+      return {search.rejection != nullptr ? rejects : nullptr, this, search.query.facing, skipped, after};
+    }
+    static bool rejects(void* self, const HitD& hit) {
+      const auto& [search, owners] = *static_cast<const AskedInTree*>(self);
+      return search.rejection->rejects(search.rejection->function, in_scene(hit, owners));
+    }
+  };
+};
 
 // The tree of an instance, as a call with this mask sees its triangles.
 class SeenTree {
@@ -142,20 +173,14 @@ SceneDQuery checked_query(const SceneDParts& scene, const TraceOptionsD& options
   return {scene, kernels, options.mask, options.facing, options.skip};
 }
 
-SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped,
-                               const SceneHitD* after) const {
-  const CommonTreeD* const only = after == nullptr ? scene.only(mask) : nullptr;
-  if (only != nullptr)
-    return in_scene(
-        kernels.closest_of_ray(only->arrays().ready, ray, facing, number_of(skipped, only->numbers())),
-        only->numbers().owners);
+SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped, const SceneHitD* after,
+                               const detail::Rejection<SceneHitD>* rejection) const {
+  const SearchD search{*this, skipped, after, rejection};
+  if (const CommonTreeD* const only = after == nullptr ? scene.only(mask) : nullptr)
+    return search.closest(only->arrays().ready, only->numbers(), ray);
   SceneHitD best;
   const auto look_in = [&](const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& mapped) {
-    HitD last;
-    if (after != nullptr) last = numbers.after(*after);
-    const SceneHitD hit = in_scene(closest_in(kernels, tree, mapped, facing, number_of(skipped, numbers),
-                                              after != nullptr ? &last : nullptr),
-                                   numbers.owners);
+    const SceneHitD hit = search.closest(tree, numbers, mapped);
     if (is_before(hit, best)) best = hit;
   };
   for (const auto& tree : scene.commons)
@@ -169,10 +194,12 @@ SceneHitD SceneDQuery::closest(const RayD& ray, const SkippedPrimitive& skipped,
   });
   return best;
 }
-bool SceneDQuery::any(const RayD& ray, const SkippedPrimitive& skipped) const {
+bool SceneDQuery::any(const RayD& ray, const SkippedPrimitive& skipped,
+                      const detail::Rejection<SceneHitD>* rejection) const {
+  const SearchD search{*this, skipped, nullptr, rejection};
   bool is_hit = false;
   const auto look_in = [&](const DoubleTreeView& tree, const MemberNumbers& numbers, const RayD& mapped) {
-    is_hit = is_hit || kernels.any_of_ray(tree, mapped, facing, number_of(skipped, numbers));
+    is_hit = is_hit || search.any(tree, numbers, mapped);
     return is_hit ? -infinity : ray.tmax;
   };
   for (const auto& tree : scene.commons)

@@ -306,6 +306,13 @@ TYPED_TEST(EveryQuery, asks_filters_about_some_triangles) {
     std::vector<std::uint8_t> occluded(world.rays.size());
     tree.closest(world.rays, hits, reject_asked, options);
     tree.occluded(world.rays, occluded, reject_asked, options);
+    auto within = hits;
+    auto occluded_within = occluded;
+    const auto rejects_any = [&](std::size_t, const HitOf<T>& hit) { return rejects(hit); };
+    tree.closest(world.rays, within, rejects_any, options);
+    tree.occluded(world.rays, occluded_within, rejects_any, options);
+    EXPECT_TRUE(same_bytes(within, hits));
+    EXPECT_EQ(occluded_within, occluded);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       HitOf<T> wanted;
       for (const HitOf<T>& hit : expected.hits[i])
