@@ -29,8 +29,8 @@ struct GeometryBatch {
   TriangleMasks masks = {};  // by rows with a rule
 };
 
-// What tests the primitives of leaves; and, if that is not null, what finds the nearest hits of rays one by one, sooner
-// than together if they share no origin, or neighbours hit little together.
+// The test of the primitives of leaves. And if that is not null, a function that finds the nearest hits of rays one by
+// one: sooner than together if they share no origin, or neighbours hit little together.
 struct LeafCallback {
   LeafFunction visit;
   void* context;

@@ -124,9 +124,9 @@ struct KeptRow {
   bool (*any)(const Tree& tree, const RayOf<T>& ray, const AskedOf<T>& asked);
 };
 
-// Rays whose caller keeps some hits, of the sides that `facing` names, but of the skipped primitives: nearest hits, or
-// whether there are any. ask() is called with up to hits_of_list hits that would be the best so far, of rays by their
-// numbers in the batch, and sets what is 0 to 1 where a hit is rejected. It may be asked again about a hit.
+// Rays whose caller keeps some hits: nearest hits, or whether there are any; of the sides that `facing` names, but of the
+// skipped primitives. ask() is called with up to hits_of_list hits that would be the best so far, of rays by their
+// numbers in the batch. It sets to 1 what is 0 where it rejects a hit. It may be asked again about a hit.
 struct KeptBatch : TraceBatch {
   void (*ask)(void* function, const std::uint32_t* rays, const Hit* hits, std::uint8_t* rejected,
               std::size_t count) = nullptr;

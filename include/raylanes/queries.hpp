@@ -85,7 +85,7 @@ using CrossingD = CrossingOf<double>;
 /// is 0, to 1 to trace the ray on after this hit.
 /// The calling thread calls it with hits of many rays at a time, one of each, behind the traversal. It sees the hits of
 /// a ray in order, each once, up to the one that it keeps. Exceptions pass through. It is for functions that are dear
-/// to call, as those of Python; a function of a ray and a hit is asked during the traversal, in half the time.
+/// to call, as in Python; a function of a ray and a hit is asked during the traversal, in half the time.
 template <class AnyHit>
 using HitFilterOf = std::function<void(std::span<const std::size_t> rays, std::span<const AnyHit> hits,
                                        std::span<std::uint8_t> rejected)>;
@@ -101,7 +101,8 @@ template <class Asked, class AnyHit>
 concept FiltersLists = std::convertible_to<Asked, HitFilterOf<AnyHit>> &&
     (!std::predicate<const Asked&, std::size_t, const AnyHit&>);
 
-// What rejects hits in one call for a batch: a filter, or if that is null a function of lists, which any thread calls.
+// The rejection of hits in one call for a batch: a filter, or if that is null a function of lists, which any thread
+// calls.
 template <class AnyHit>
 struct BatchRejection {
   const HitFilterOf<AnyHit>* filter = nullptr;

@@ -33,7 +33,7 @@ class RayQueries {
   using Points = VertexRecords<Number>;          ///< a view of points
   using Ends = SegmentEndsOf<Number>;            ///< the ends of segments
   using Filter = HitFilterOf<Hit>;               ///< a filter of batches
-  using Rejected = detail::BatchRejection<Hit>;  ///< what rejects hits of a batch
+  using Rejected = detail::BatchRejection<Hit>;  ///< the rejection of hits of a batch
   using Occluded = std::span<std::uint8_t>;      ///< a byte for each ray
 
  public:
@@ -107,8 +107,8 @@ class RayQueries {
     const Filter of_lists = filter;
     filtered_occluded(rays, occluded, {&of_lists}, options);
   }
-  /// Sets occluded[i] to 1 if the segment of ray i has a hit for which rejects(i, hit) is false, else to 0. rejects()
-  /// is asked as in closest() of many rays.
+  /// Sets occluded[i] to 1 if the segment of ray i has a hit for which rejects(i, hit) is false, else to 0. The
+  /// function is asked as in closest() of many rays.
   template <class Some, std::predicate<std::size_t, const Hit&> Rejects>
   void occluded(const Some& rays, Occluded occluded, Rejects&& rejects, const Options& options = {}) const {
     detail::with_batch_rejection<Hit>(

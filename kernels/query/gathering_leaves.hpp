@@ -7,7 +7,7 @@
 namespace raylanes {
 namespace {
 
-// What rays have met, a column for each number: the ray; the leaf triangle; the primitive, which takes 28 bits, with
+// The hits of rays, a column for each number: the ray; the leaf triangle; the primitive, which takes 28 bits, with
 // the sign of the side above.
 struct FoundColumns {
   std::uint32_t *ray, *leaf_triangle, *primitive;

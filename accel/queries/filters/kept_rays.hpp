@@ -14,7 +14,7 @@ struct AsHitOfTree {
   const Hit& operator()(const Hit& hit) const { return hit; }
 };
 
-// What the kernels of a tree call to ask about hits of the rays of a call.
+// The function of a tree's kernels to ask about hits of the rays of a call.
 template <class Seeing>
 class AskedCall {
   using Seen = typename Seeing::Seen;
@@ -139,7 +139,7 @@ bool keep_in_tree(const TracedTree& tree, const RaySource& rays, const Sink& sin
   return true;
 }
 
-// What rejects hits of one ray of a batch.
+// The rejection of hits of one ray of a batch.
 template <class AnyHit>
 struct RejectionOfRay {
   const detail::BatchRejection<AnyHit>& batch;

@@ -271,7 +271,7 @@ class RayDoor<Scene> {
     std::ranges::transform(in_tree, hits.begin(), [&](const Hit& hit) { return numbers.owners.spread(hit); });
   }
 
-  // Where rays see no more than a common tree.
+  // False if rays see more than a common tree.
   template <class Sink>
   bool keep(const RaySource& rays, const Sink& sink, const detail::BatchRejection<SceneHit>& rejected,
             const TraceOptions& by) const {
