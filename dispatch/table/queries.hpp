@@ -93,7 +93,7 @@ struct SphereQuery {
   TraceCounters* counters = nullptr;  // of the counted row
 };
 
-// Some rays at a leaf of spheres: rays by their numbers in arrays of rays, and of their hits so far, or whether they are
+// Some rays at a leaf of spheres, by their numbers in arrays: of rays, and of their hits so far or whether they are
 // occluded; the other one is null.
 struct SphereVisit {
   std::uint32_t first, size;  // spheres, at most a leaf's
@@ -124,9 +124,9 @@ struct KeptRow {
   bool (*any)(const Tree& tree, const RayOf<T>& ray, const AskedOf<T>& asked);
 };
 
-// Rays whose caller keeps some hits: nearest hits, or whether there are any; of the sides that `facing` names, but of the
-// skipped primitives. ask() is called with up to hits_of_list hits that would be the best so far, of rays by their
-// numbers in the batch. It sets to 1 what is 0 where it rejects a hit. It may be asked again about a hit.
+// Rays whose caller keeps some hits: nearest ones, or any. `facing` and `skip` say which triangles count. ask() is
+// called with up to hits_of_list hits that would be the best so far, of rays by their numbers in the batch. It sets to
+// 1 what is 0 where it rejects a hit. It may be asked again about a hit.
 struct KeptBatch : TraceBatch {
   void (*ask)(void* function, const std::uint32_t* rays, const Hit* hits, std::uint8_t* rejected,
               std::size_t count) = nullptr;

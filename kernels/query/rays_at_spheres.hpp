@@ -67,7 +67,7 @@ class RaysAtSpheres {
       for (; hit != 0; hit &= hit - 1) leaf_.occluded[number[std::countr_zero(hit)]] = 1;
     }
   }
-  // What rays hit of sphere i of the leaf.
+  // The hits of rays and sphere i of the leaf.
   Found hits_of(const ScaledRayOf<V>& ray, V tmin, V tmax, const std::uint32_t (&number)[N],
                 std::uint32_t i) const {
     const V sphere[4] = {V(row_[i]), V(row_[leaf_.size + i]), V(row_[2 * leaf_.size + i]),
