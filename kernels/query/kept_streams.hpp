@@ -28,17 +28,10 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
     const AskedRayOf one(batch_, static_cast<std::uint32_t>(number));
     store(number, closest_kept(tree_, batch_.rays[number], one.asked));
   }
-  [[gnu::noinline, gnu::flatten]] void trace_singly(TreeReference from, const ListEntry* list,
-                                                    std::uint32_t size) {
-    this->each_single(
-        from, list, size,
-        [this](const TreeView& below, const SingleBoxes& boxes, std::uint32_t i, NoCounters& cost) {
-          if (rays_.rows[i].tmax == ended) return;
-          const AskedRayOf one(batch_, rays_.number[i]);
-          Query query = query_of(i, one);
-          trace<ExactOfAsked>(below, one.ray, this->template unpacked<ExactOfAsked>(i, boxes), query, cost);
-          keep(i, query.best);
-        });
+  [[gnu::noinline]] void trace_singly(TreeReference from, const ListEntry* list, std::uint32_t size) {
+    TreeView below = tree_;
+    below.root = from;
+    for (std::uint32_t k = 0; k < size; ++k) go_alone(below, index_of(list[k]));
   }
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
@@ -54,11 +47,10 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
   // A ray whose caller is asked about one hit at a time.
   struct AskedRayOf {
     const KeptBatch& batch;
-    const Ray& ray;
     std::uint32_t number;
     AskedOf<float> asked;
 
-    AskedRayOf(const KeptBatch& of, std::uint32_t i) : batch(of), ray(of.rays[i]), number(i) {
+    AskedRayOf(const KeptBatch& of, std::uint32_t i) : batch(of), number(i) {
       asked = {rejects, this, batch.facing, skipped_by(batch, i), nullptr, batch.occluded != nullptr};
     }
     AskedRayOf(const AskedRayOf&) = delete;
@@ -82,10 +74,15 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
     rays_.hits[i] = hit;
     if (hit) rays_.rows[i].tmax = only_decides() ? ended : hit.t;
   }
-  Query query_of(std::uint32_t i, const AskedRayOf& one) const {
-    Query query(one.ray, one.asked, RestOfSegment<float>(rays_.t_lo(i)), KnownHits());
-    query.best = rays_.hits[i], query.end_at(rays_.rows[i].tmax);
-    return query;
+  // What is left of a ray, from the root of a tree on. A hit whose t rounds to that of the best one may be better.
+  void go_alone(const TreeView& tree, std::uint32_t i) {
+    if (rays_.rows[i].tmax == ended) return;
+    const AskedRayOf one(batch_, rays_.number[i]);
+    Ray rest = batch_.rays[rays_.number[i]];
+    const float end = float_above(rays_.rows[i].tmax);
+    rest.tmax = end < rest.tmax ? end : rest.tmax;
+    const Hit hit = closest_kept(tree, rest, one.asked);
+    if (is_better(hit.t, hit.primitive, rays_.hits[i])) keep(i, hit);
   }
 
   bool make_room() {
@@ -112,13 +109,15 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
       const std::uint32_t i = index_of(list[std::countr_zero(undecided)]);
       if (rays_.rows[i].tmax == ended) continue;
       const AskedRayOf one(batch_, rays_.number[i]);
-      Query query = query_of(i, one);
+      Query query(batch_.rays[rays_.number[i]], one.asked, RestOfSegment<float>(rays_.rows[i].tmax),
+                  KnownHits());
+      query.best = rays_.hits[i];
       if (query.sides.admitted(1u, triangles, leaf_triangle) == 0) continue;
       query.look_at(triangles, leaf_triangle, false);
-      const bool goes_alone = query.beside > 0;
-      if (goes_alone) walk_beside<ExactOfAsked>(tree_, one.ray, query, this->counters_);
       keep(i, query.best);
-      if (goes_alone) rays_.rows[i].tmax = ended;
+      if (query.beside == 0) continue;
+      go_alone(tree_, i);
+      rays_.rows[i].tmax = ended;
     }
   }
 
