@@ -74,7 +74,7 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
     rays_.hits[i] = hit;
     if (hit) rays_.rows[i].tmax = only_decides() ? ended : hit.t;
   }
-  // What is left of a ray, from the root of a tree on. A hit whose t rounds to that of the best one may be better.
+  // Traces the rest of a ray from the root of a tree on. A hit whose t rounds to that of the best one may be better.
   void go_alone(const TreeView& tree, std::uint32_t i) {
     if (rays_.rows[i].tmax == ended) return;
     const AskedRayOf one(batch_, rays_.number[i]);
