@@ -4,7 +4,7 @@
 #include <raylanes/traversal.hpp>
 #include <raylanes/triangle_tree.hpp>
 
-#include "../../dispatch/table/tree_view.hpp"
+#include "../../dispatch/table/traversal.hpp"
 #include "ray_source.hpp"
 
 namespace raylanes {
@@ -97,9 +97,13 @@ class FewRays {
     return size_ >= min_columns && are_alike({rays_, size_}, box);
   }
   bool may_be_columns() const { return size_ >= min_columns && size_ <= rays_of_columns; }
-  const AnyRay* rays() const { return rays_; }
   Answer* answers() const { return answers_; }
-  std::size_t size() const { return size_; }
+  // Without answers.
+  TraceBatchOf<float> batch() const requires std::is_same_v<AnyRay, Ray> {
+    TraceBatchOf<float> batch;
+    batch.rays = rays_, batch.size = size_;
+    return batch;
+  }
   // answers[i] = call(rays[i], i)
   template <class Call>
   void trace(const Call& call) const {

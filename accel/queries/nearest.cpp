@@ -183,8 +183,7 @@ class KernelsOfTree {
   }
   template <class Answer>
   bool trace_alike(const FewRays<Ray, Answer>& few) const {
-    TraceBatch batch;
-    batch.rays = few.rays(), batch.size = few.size();
+    TraceBatch batch = few.batch();
     set_answers(batch, few.answers());
     return raylanes::trace_alike(*ready_, batch);
   }

@@ -1,4 +1,6 @@
 // Few rays that go one way from about one place, which are traced together: the hits of exact arithmetic.
+#include <raylanes/scene.hpp>
+
 #include "../../bench/support/oracles/exact_rays.hpp"
 #include "../support/random_input.hpp"
 #include "../support/same_bytes.hpp"
@@ -111,14 +113,22 @@ TEST(FewRays, by_default_options_have_the_hits_of_calls) {
   Random random(2907);
   const Mesh mesh = triangle_soup(500, 0.2f, 2908);
   const Bvh bvh(mesh);
+  Scene scene;
+  for (const Mesh& part : {mesh, triangle_soup(50, 0.3f, 2909)}) scene.place(scene.add(Bvh(part)));
+  scene.update();
   for (std::size_t count = 1; count <= 64; ++count) {
     const std::vector<Ray> rays = alike_rays(mesh, Alike::origin, static_cast<int>(count % 8), count, random);
     std::vector<Hit> hits(count);
     std::vector<std::uint8_t> occluded(count);
+    std::vector<SceneHit> of_scene(count);
+    std::vector<std::uint8_t> occluded_in_scene(count);
     bvh.closest(rays, hits), bvh.occluded(rays, occluded);
+    scene.closest(rays, of_scene), scene.occluded(rays, occluded_in_scene);
     for (std::size_t i = 0; i < count; ++i) {
       EXPECT_TRUE(same_bytes(hits[i], bvh.closest(rays[i]))) << count;
       EXPECT_EQ(occluded[i] != 0, bvh.occluded(rays[i])) << count;
+      EXPECT_TRUE(same_bytes(of_scene[i], scene.closest(rays[i]))) << count;
+      EXPECT_EQ(occluded_in_scene[i] != 0, scene.occluded(rays[i])) << count;
     }
   }
 }

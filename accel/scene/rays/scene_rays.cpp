@@ -114,6 +114,21 @@ class KernelsOfScene {
   bool takes(const FewRays<Ray, Answer>& few) const {
     return tree_ != nullptr ? !few.may_be_packet(tree_->view->bounds) : !scene_.has_others();
   }
+  template <class Answer>
+  bool trace_alike(const FewRays<Ray, Answer>& few) const {
+    if (tree_ == nullptr) return false;
+    TraceBatch batch = few.batch();
+    if constexpr (std::is_same_v<Answer, SceneHit>) {
+      Hit hits[rays_of_columns];
+      batch.hits = hits;
+      if (!raylanes::trace_alike(*tree_->view, batch)) return false;
+      for (std::size_t i = 0; i < batch.size; ++i) few.answers()[i] = tree_->numbers().owners.spread(hits[i]);
+      return true;
+    } else {
+      batch.occluded = few.answers();
+      return raylanes::trace_alike(*tree_->view, batch);
+    }
+  }
   SceneHit closest(const Ray& ray, std::size_t i) const {
     if (tree_ == nullptr) return walked_closest(scene_, *path_, ray, options_.mask);
     const Hit hit = rows_.closest(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
