@@ -260,11 +260,14 @@ int fuzz_trace(const std::uint8_t* data, std::size_t size) {
   const std::span<std::uint8_t> occluded(occluded_fence.last<std::uint8_t>(n), n);
   Coordinates coordinates(bytes);
   const bool share_origin = bytes.chance(64), share_end = bytes.chance(64);
+  const bool share_octant = bytes.chance(96);  // few of them are traced as columns
   const Ray to_end = any_ray(bytes, coordinates, mesh);
   for (std::size_t i = 0; i < n; ++i) {
     rays[i] = i > 0 && bytes.chance(64) ? rays[i - 1] : any_ray(bytes, coordinates, mesh);
     if (share_origin && !bytes.chance(16)) rays[i].origin = rays[0].origin;
     if (share_end && !bytes.chance(8)) end_at(to_end.origin, rays[i]);
+    for (std::size_t axis = 0; axis < 3 && share_octant; ++axis)
+      rays[i].direction[axis] = std::copysign(rays[i].direction[axis], rays[0].direction[axis]);
   }
   for (Ray& ray : rays) placement.move(ray);
   ray_view.put(rays);
