@@ -68,8 +68,8 @@ class OctantFrustum {
   V tmin_, tmax_;
 };
 
-// So many rays are few, as each has a bit of a word. Shorter vectors gain little.
-inline constexpr std::uint32_t max_few = stream_lanes < 8 ? 0 : 64;
+// So many rays are few, as each has a bit of a word. Other paths gain little, and save the code.
+inline constexpr std::uint32_t max_few = has_node_lanes ? 64 : 0;
 
 struct FewIndices {
   std::uint32_t of[64];
