@@ -18,8 +18,9 @@ template <class Triangles, class AnyRay>
                                        std::uint32_t leaf_triangle) {
   using T = NumberOfRay<AnyRay>;
   const PredicateInput<T> in(triangles, ray, leaf_triangle);
-  const auto found = detail::decide_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin),
-                                            finite_tmax(ray.tmax));
+  // With DAZ the sum is zero where floats take an end for zero.
+  const auto found = detail::decide_exactly(in.origin, in.direction, in.corners, finite_tmin(ray.tmin) + T(0),
+                                            finite_tmax(ray.tmax) + T(0));
   HitOf<T> hit;
   if (found.hit)
     hit.t = found.t + T(0), hit.u = found.u + T(0), hit.v = found.v + T(0),

@@ -153,7 +153,9 @@ template <int N>
     float origin[3], direction[3], triangle[9];
     for (int k = 0; k < 3; ++k) origin[k] = lanes.origin[k][i], direction[k] = lanes.direction[k][i];
     for (int k = 0; k < 9; ++k) triangle[k] = lanes.corner[k][i];
-    const auto hit = detail::decide_exactly(origin, direction, triangle, lanes.tmin[i], lanes.tmax[i]);
+    // With DAZ the sum is zero where floats take an end for zero.
+    const auto hit =
+        detail::decide_exactly(origin, direction, triangle, lanes.tmin[i] + 0.0f, lanes.tmax[i] + 0.0f);
     if (!hit.hit) continue;
     hits.lanes |= 1u << i;
     hits.t[i] = hit.t + 0.0f, hits.u[i] = hit.u + 0.0f, hits.v[i] = hit.v + 0.0f;

@@ -109,6 +109,22 @@ TEST(BvhExtremes, directions_below_the_normal_numbers) {
   EXPECT_GT(expect_brute_force(mesh, rays), 10u);
 }
 
+// With DAZ both ends of these segments are zeros, to integers as to floats: the rays hit where they begin, or nothing.
+TEST(BvhExtremes, segments_whose_ends_are_flushed) {
+  Mesh mesh;
+  mesh.vertices = {
+      {0, 0, 0x1.8p-100f}, {0x1p-100f, -0x1p-99f, 0x1.8p-100f}, {0x1p-101f, 0x1p-100f, 0x1.8p-100f}};
+  mesh.triangles.assign(20, {0, 1, 2});
+  Ray ray = make_ray(mesh.vertices[0], {0, 0x1p29f, 0x1p29f});
+  ray.tmin = -0x1p-128f, ray.tmax = -0x1p-129f;
+  const std::vector<Ray> rays(100, ray);
+  const Bvh bvh(mesh);
+  const FloatModeScope flushes(FloatMode::flush);
+  for (const TraceOptions& options : ways_by_every_test())
+    for (const Hit& hit : trace(bvh, rays, options))
+      ASSERT_TRUE(hit.primitive == no_primitive || hit.t == 0) << name_of(options) << ": " << hit.t;
+}
+
 TEST(BvhExtremes, an_infinite_distance_is_no_hit) {
   Mesh mesh;
   mesh.vertices = {{-0.3f, -0.3f, 0}, {0.3f, -0.3f, 0}, {0, 0.3f, 0}};
