@@ -60,7 +60,7 @@ COMMANDS = {
                for size in each(SIZE=['64x64', '256x256', '1024x1024'])]),
     'batches': ('raylanes trace SCENE --size SIZE --order tiles --mode automatic,call --batch '
                 '1,2,4,8,16,32,64,128,256,512,1024,4096,16384,65536,262144,1048576 --streams 8,64,1024 --rays '
-                'primary,shadow,diffuse --path avx512,avx2 --against embree --seconds 1',
+                'primary,shadow,diffuse --path avx512,avx2 --against embree --seconds 0.3',
                 each(SCENE=['sibenik'], SIZE=['1024x1024']) + each(SCENE=['kitchen'], SIZE=['512x512'])),
     'embree_calls': ('compare_libraries SCENE WHAT --parts PARTS --path avx512,avx2 --rounds 5',
                      each(SCENE=['sponza', 'dragon'], WHAT=['calls'], PARTS=[1]) +
