@@ -21,6 +21,15 @@ inline std::size_t batch_size_of(const TreeView& tree) {
 // max_in_columns, alike rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
 inline constexpr std::size_t min_packet = 32, min_columns = 8, max_in_columns = 512, rays_of_columns = 64;
 
+// From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and each finds a hit
+// soon. is_usual: no side, skip or mask.
+inline constexpr std::size_t min_parallel = 128;
+inline std::size_t least_in_columns(std::span<const Ray> rays, bool only_decides, bool is_usual) {
+  constexpr std::size_t by_rule = 16;
+  if (only_decides && rays.front().direction == rays.back().direction) return min_parallel;
+  return is_usual ? min_columns : by_rule;
+}
+
 // Whether rays go one way from about one place: some of them in one octant, within 30 degrees and a fifth of the box.
 inline bool are_alike(std::span<const Ray> rays, const Box& box) {
   constexpr float max_apart = 0.2f, min_cosine = 0.87f;
@@ -85,18 +94,23 @@ class FewRays {
           bool are_default, std::size_t limit)
       : rays_(static_cast<const AnyRay*>(rays.first)), answers_(answers), size_(rays.count) {
     if (std::is_same_v<AnyRay, RayD> && !only_decides) limit = std::min(limit, min_flying_batch);
-    const bool is_plain = size_ < limit && count == size_ && answers != nullptr && lie_plain(rays) &&
+    const bool is_plain = size_ < std::max(limit, min_parallel) && count == size_ && answers != nullptr &&
+                          lie_plain(rays) &&
                           are_apart(rays_, size_ * sizeof(AnyRay), answers, size_ * sizeof(Answer)) &&
                           (are_default || stay_plain(options));
-    if (!is_plain) rays_ = nullptr;
+    if (!is_plain || (size_ >= limit && !(limit == min_batch && are_parallel()))) rays_ = nullptr;
   }
   explicit operator bool() const { return rays_ != nullptr; }
   // Whether they may be better off together: rays of floats.
-  bool may_be_packet(const Box& box) const {
+  bool may_be_packet(const Box& box, bool is_usual) const {
     if (!only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin) return true;
-    return size_ >= min_columns && are_alike({rays_, size_}, box);
+    return size_ >= min_columns && size_ >= least_in_columns({rays_, size_}, only_decides, is_usual) &&
+           are_alike({rays_, size_}, box);
   }
-  bool may_be_columns() const { return size_ >= min_columns && size_ <= rays_of_columns; }
+  bool may_be_columns() const {
+    return size_ >= min_columns && size_ <= rays_of_columns &&
+           size_ >= least_in_columns({rays_, size_}, only_decides, true);
+  }
   Answer* answers() const { return answers_; }
   // Without answers.
   TraceBatchOf<float> batch() const requires std::is_same_v<AnyRay, Ray> {
@@ -112,6 +126,8 @@ class FewRays {
 
  private:
   static constexpr bool only_decides = std::is_same_v<Answer, std::uint8_t>;
+  // Whether they go to a sun, where any hit will do.
+  bool are_parallel() const { return only_decides && rays_[0].direction == rays_[size_ - 1].direction; }
   static bool are_apart(const void* a, std::size_t bytes_of_a, const void* b, std::size_t bytes_of_b) {
     const auto at_a = reinterpret_cast<std::uintptr_t>(a), at_b = reinterpret_cast<std::uintptr_t>(b);
     return at_b - at_a >= bytes_of_a && at_a - at_b >= bytes_of_b;

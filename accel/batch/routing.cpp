@@ -179,7 +179,9 @@ bool is_tiny(const Box& bounds) {
 
 // Whether rays are few, and the first of them alike.
 bool may_be_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  const std::span<const Ray> rays(batch.rays, batch.size);
   return batch.size >= min_columns && batch.size < max_in_columns &&
+         batch.size >= least_in_columns(rays, batch.occluded != nullptr, choice.by_rule == nullptr) &&
          choice.mode == TraversalMode::automatic && choice.hint != BatchHint::incoherent &&
          choice.nearest_triangle != nullptr && !choice.fixed_parts && tree.max_fused_size != 0.0f &&
          are_alike({batch.rays, std::min(batch.size, rays_of_columns)}, tree.bounds);

@@ -179,7 +179,7 @@ class KernelsOfTree {
   std::size_t batch_size() const { return batch_size_of(*ready_); }
   template <class Answer>
   bool takes(const FewRays<Ray, Answer>& few) const {
-    return !few.may_be_packet(ready_->bounds);
+    return !few.may_be_packet(ready_->bounds, rows_.by_rule == nullptr);
   }
   template <class Answer>
   bool trace_alike(const FewRays<Ray, Answer>& few) const {

@@ -112,7 +112,8 @@ class KernelsOfScene {
   std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
   template <class Answer>
   bool takes(const FewRays<Ray, Answer>& few) const {
-    return tree_ != nullptr ? !few.may_be_packet(tree_->view->bounds) : !scene_.has_others();
+    return tree_ != nullptr ? !few.may_be_packet(tree_->view->bounds, rows_.by_rule == nullptr)
+                            : !scene_.has_others();
   }
   template <class Answer>
   bool trace_alike(const FewRays<Ray, Answer>& few) const {
