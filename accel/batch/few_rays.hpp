@@ -21,8 +21,8 @@ inline std::size_t batch_size_of(const TreeView& tree) {
 // max_in_columns, alike rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
 inline constexpr std::size_t min_packet = 32, min_columns = 8, max_in_columns = 512, rays_of_columns = 64;
 
-// From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and single ones find
-// hits soon. is_usual: no side, skip or mask.
+// From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and each of them
+// finds a hit soon. is_usual: no side, skip or mask.
 inline constexpr std::size_t min_parallel = 128;
 inline std::size_t least_in_columns(std::span<const Ray> rays, bool only_decides, bool is_usual) {
   constexpr std::size_t by_rule = 16;
