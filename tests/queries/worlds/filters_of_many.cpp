@@ -40,6 +40,7 @@ struct Case {
 constexpr Case cases[] = {
     {"every other", 12, [](std::size_t ray, std::uint32_t k) { return (ray + k) % 2 == 0; }},
     {"one of eleven", 12, [](std::size_t ray, std::uint32_t k) { return (ray * 5 + k) % 11 == 0; }},
+    {"nearly all", 12, [](std::size_t ray, std::uint32_t k) { return (ray * 7 + k) % 41 != 0; }},
     {"none", 12, [](std::size_t, std::uint32_t) { return false; }},
     {"one far behind", 700, [](std::size_t ray, std::uint32_t k) { return k == 600 + ray % 64; }},
     {"many for few rays", 300, [](std::size_t ray, std::uint32_t k) { return ray % 50 != 0 || k == 299; }}};
