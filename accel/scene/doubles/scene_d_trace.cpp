@@ -131,8 +131,8 @@ struct SearchD {
     const SearchD& search;
     const TriangleOwners& owners;
 
-    AskedOf<double> of(std::uint32_t skipped, const HitD* after) {
-      return {search.rejection != nullptr ? rejects : nullptr, this, search.query.facing, skipped, after};
+    AskedOf<double> of(std::uint32_t skipped_here, const HitD* last) {
+      return {search.rejection != nullptr ? rejects : nullptr, this, search.query.facing, skipped_here, last};
     }
     static bool rejects(void* self, const HitD& hit) {
       const auto& [search, owners] = *static_cast<const AskedInTree*>(self);
