@@ -24,9 +24,13 @@ inline constexpr std::size_t min_packet = 32, min_columns = 8, max_in_columns = 
 // From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and each of them
 // finds a hit soon. is_usual: no side, skip or mask.
 inline constexpr std::size_t min_parallel = 128;
+template <class AnyRay>
+bool are_parallel(std::span<const AnyRay> rays) {
+  return rays.front().direction == rays.back().direction;
+}
 inline std::size_t least_in_columns(std::span<const Ray> rays, bool only_decides, bool is_usual) {
   constexpr std::size_t by_rule = 16;
-  if (only_decides && rays.front().direction == rays.back().direction) return min_parallel;
+  if (only_decides && are_parallel(rays)) return min_parallel;
   return is_usual ? min_columns : by_rule;
 }
 
@@ -98,19 +102,16 @@ class FewRays {
                           lie_plain(rays) &&
                           are_apart(rays_, size_ * sizeof(AnyRay), answers, size_ * sizeof(Answer)) &&
                           (are_default || stay_plain(options));
-    if (!is_plain || (size_ >= limit && !(limit == min_batch && are_parallel()))) rays_ = nullptr;
+    const auto go_to_a_sun = [&] { return only_decides && limit == min_batch && are_parallel(some()); };
+    if (!is_plain || (size_ >= limit && !go_to_a_sun())) rays_ = nullptr;
   }
   explicit operator bool() const { return rays_ != nullptr; }
   // Whether they may be better off together: rays of floats.
   bool may_be_packet(const Box& box, bool is_usual) const {
     if (!only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin) return true;
-    return size_ >= min_columns && size_ >= least_in_columns({rays_, size_}, only_decides, is_usual) &&
-           are_alike({rays_, size_}, box);
+    return fill_columns(is_usual) && are_alike(some(), box);
   }
-  bool may_be_columns() const {
-    return size_ >= min_columns && size_ <= rays_of_columns &&
-           size_ >= least_in_columns({rays_, size_}, only_decides, true);
-  }
+  bool may_be_columns() const { return size_ <= rays_of_columns && fill_columns(true); }
   Answer* answers() const { return answers_; }
   // Without answers.
   TraceBatchOf<float> batch() const requires std::is_same_v<AnyRay, Ray> {
@@ -126,8 +127,11 @@ class FewRays {
 
  private:
   static constexpr bool only_decides = std::is_same_v<Answer, std::uint8_t>;
-  // Whether they go to a sun, where any hit will do.
-  bool are_parallel() const { return only_decides && rays_[0].direction == rays_[size_ - 1].direction; }
+  std::span<const AnyRay> some() const { return {rays_, size_}; }
+  // Whether they are enough for columns, if they are alike.
+  bool fill_columns(bool is_usual) const {
+    return size_ >= min_columns && size_ >= least_in_columns(some(), only_decides, is_usual);
+  }
   static bool are_apart(const void* a, std::size_t bytes_of_a, const void* b, std::size_t bytes_of_b) {
     const auto at_a = reinterpret_cast<std::uintptr_t>(a), at_b = reinterpret_cast<std::uintptr_t>(b);
     return at_b - at_a >= bytes_of_a && at_a - at_b >= bytes_of_b;

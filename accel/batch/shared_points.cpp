@@ -68,13 +68,12 @@ const Ray& max_different(std::span<const Ray> rays, std::size_t step) {
   return *best;
 }
 
-// The i-th of places spread over `size` so that no rows or columns show: multiples of the golden ratio.
-std::size_t spread(std::size_t i, std::size_t size) {
+}  // namespace
+
+std::size_t place_in_sample(std::size_t i, std::size_t size) {
   const double turns = 0.6180339887498949 * static_cast<double>(i);
   return static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(size));
 }
-
-}  // namespace
 
 template <class AnyRay>
 std::size_t count_of_origin(std::span<const AnyRay> rays) {
@@ -117,7 +116,7 @@ template <class AnyRay, class AnyBox>
 bool pass_by(std::span<const AnyRay> rays, const AnyBox& box) {
   const std::size_t looks = std::clamp<std::size_t>(rays.size() / 32, 3, looked_at);
   for (std::size_t i = 0; i < looks; ++i) {
-    const AnyRay& ray = rays[spread(i, rays.size())];
+    const AnyRay& ray = rays[place_in_sample(i, rays.size())];
     double near = ray.tmin, far = ray.tmax;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double origin = ray.origin[axis], direction = ray.direction[axis],
@@ -287,7 +286,7 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
   const bool has_point = shared != SharedApex::none;
   std::array<Point, max_directions> directions;
   const auto seen_from_point = [&](std::size_t i) {
-    const RayOf<T>& ray = rays[spread(i, rays.size())];
+    const RayOf<T>& ray = rays[place_in_sample(i, rays.size())];
     return unit(shared == SharedApex::end ? Point(ray.origin) - Point(point) : Point(ray.direction));
   };
   double of_a_ray = 0;
@@ -310,7 +309,7 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
   std::array<double, max_traced> triangles;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < traced; ++i) {
-    const std::size_t k = std::clamp(spread(i, rays.size()), std::size_t{1}, rays.size() - 2);
+    const std::size_t k = std::clamp(place_in_sample(i, rays.size()), std::size_t{1}, rays.size() - 2);
     RayOf<T> ray{has_point ? point : rays[k].origin, 0, rays[k].direction,
                  std::numeric_limits<T>::infinity()};
     if (shared == SharedApex::end) ray.direction = directions[i].template rounded<T>();

@@ -9,6 +9,9 @@
 
 namespace raylanes {
 
+// The i-th of places spread over `size` so that no rows or columns show: multiples of the golden ratio.
+std::size_t place_in_sample(std::size_t i, std::size_t size);
+
 // Fewer rays of a point are not worth a packet: measured.
 inline constexpr std::size_t min_shared_point = 64;
 

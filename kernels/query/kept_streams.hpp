@@ -101,7 +101,7 @@ class KeptLeaves : public GatheringLeaves<KeptLeaves, ExactOfAsked, NoCounters> 
            std::uint32_t primitive) {
     found_.append(lanes, rays, against, leaf_triangle, primitive);
   }
-  // One by one, by the text of single rays. A ray that comes to a triangle beside it goes on alone.
+  // Decides them one by one, as single rays do. A ray that comes to a triangle beside it goes on alone.
   [[gnu::noinline]] void put_undecided(std::uint32_t undecided, const ListEntry* list,
                                        std::uint32_t leaf_triangle) {
     const TreeTriangles triangles(tree_);

@@ -86,7 +86,7 @@ class RaysAtSpheres {
     std::uint32_t skips = 0;
     for (int lane = 0; lane < N; ++lane)
       skips |= std::uint32_t{leaf_.skip[number[lane]] == primitive} << lane;
-    const auto skipped = FloatMask<N>::from_bits(skips), is_near = abs(d.near - tmin) <= abs(d.far - tmin);
+    const auto skipped = FloatMask<N>::from_bits(skips), is_near = enters_nearer(d, tmin);
     near = near & ~(skipped & is_near), far = far & ~(skipped & ~is_near);
   }
 

@@ -21,6 +21,13 @@ struct SphereSearch : NearestFirst {
   }
 };
 
+// Whether the nearer side of a sphere, seen from the begin of a segment, is that at which the line enters it. A skipped
+// sphere lacks the nearer side.
+template <class V>
+inline auto enters_nearer(const SphereDistancesOf<V>& d, V tmin) {
+  return abs(d.near - tmin) <= abs(d.far - tmin);
+}
+
 class SpheresOfRay {
   using V = Floats<node_lanes>;
   using Test = PerpendicularInLanes<Grade::reproducible, node_lanes>;
@@ -113,7 +120,7 @@ class SpheresOfRay {
       skipped |= std::uint32_t{primitive == asked_.skipped} << i;
       behind |= std::uint32_t{asked_.after != nullptr && primitive > asked_.after->primitive} << i;
     }
-    const std::uint32_t skips_near = bits(abs(d.near - V(tmin_)) <= abs(d.far - V(tmin_)));
+    const std::uint32_t skips_near = bits(enters_nearer(d, V(tmin_)));
     std::uint32_t nears = bits(near) & ~(skipped & skips_near), fars = bits(far) & ~(skipped & ~skips_near);
     if (asked_.after != nullptr) {
       const V last(asked_.after->t);

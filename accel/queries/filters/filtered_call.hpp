@@ -3,6 +3,7 @@
 
 #include <raylanes/ray_queries.hpp>
 
+#include "../../batch/shared_points.hpp"
 #include "../../batch/triangle_masks.hpp"
 #include "../after.hpp"
 #include "kept_rays.hpp"
@@ -75,30 +76,26 @@ class FilteredCall {
     Options of_some = by;
     of_some.active = nullptr, of_some.progress = nullptr, of_some.skip = skips;
     std::vector<Hit> found(some.size());
-    const auto rejects = [&](std::size_t k, const Hit& hit) { return rejects_hit(some.indices[k], hit); };
+    const auto rejects = [&](std::size_t k, const Hit& hit) {
+      return rejects_hit(rejected_, some.indices[k], hit);
+    };
     detail::with_batch_rejection<Hit>(rejects, [&](const detail::BatchRejection<Hit>& rejected) {
       keep_rays(door_, Source{.records = some.rays, .skip = skips}, HitSink<Hit>{HitRecords<Hit>(found)},
                 rejected, of_some);
     });
     for (std::size_t k = 0; k < found.size(); ++k) hits.set(some.indices[k], found[k]);
   }
-  bool rejects_hit(std::size_t ray, const Hit& hit) const {
-    std::uint8_t is_rejected = 0;
-    rejected_.reject(rejected_.function, &ray, &hit, &is_rejected, 1);
-    return is_rejected != 0;
-  }
   // The share of hits that is rejected, of a sample of rays.
   double share_rejected(const Source& rays, const Options& by) const {
     constexpr std::size_t sample = 64;
-    Options one = by;
-    one.active = nullptr, one.progress = nullptr, one.threads = 1;
+    Options one = options_of_singles(by);
     std::size_t asked = 0, turned_down = 0;
     for (std::size_t k = 0; k < sample; ++k) {
-      const std::size_t i = k * 2654435761u % rays.size();  // in all columns of a picture (Knuth 1973)
+      const std::size_t i = place_in_sample(k, rays.size());
       if (!rays.takes_part(i)) continue;
       one.skip = element_of(by.skip, i);
       const auto rejects = [&](const Hit& hit) {
-        const bool is_rejected = rejects_hit(i, hit);
+        const bool is_rejected = rejects_hit(rejected_, i, hit);
         ++asked, turned_down += is_rejected ? 1 : 0;
         return is_rejected;
       };

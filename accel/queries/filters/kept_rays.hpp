@@ -139,6 +139,13 @@ bool keep_in_tree(const TracedTree& tree, const RaySource& rays, const Sink& sin
   return true;
 }
 
+// Whether a hit of a ray of a batch is rejected.
+template <class AnyHit>
+bool rejects_hit(const detail::BatchRejection<AnyHit>& rejected, std::size_t ray, const AnyHit& hit) {
+  std::uint8_t is_rejected = 0;
+  rejected.reject(rejected.function, &ray, &hit, &is_rejected, 1);
+  return is_rejected != 0;
+}
 // The rejection of hits of one ray of a batch.
 template <class AnyHit>
 struct RejectionOfRay {
@@ -147,9 +154,7 @@ struct RejectionOfRay {
 
   static bool rejects(void* self, const AnyHit& hit) {
     const auto& of = *static_cast<const RejectionOfRay*>(self);
-    std::uint8_t is_rejected = 0;
-    of.batch.reject(of.batch.function, &of.ray, &hit, &is_rejected, 1);
-    return is_rejected != 0;
+    return rejects_hit(of.batch, of.ray, hit);
   }
   detail::Rejection<AnyHit> rejection() { return {rejects, this}; }
 };
@@ -159,6 +164,12 @@ template <class View>
 View element_of(const View& view, std::size_t i) {
   if (view.first == nullptr) return view;
   return {static_cast<const std::byte*>(view.first) + i * view.stride, 1, view.stride, view.to_instance};
+}
+// The options of single rays of a batch, whose views are to be set.
+template <class Options>
+Options options_of_singles(Options of_batch) {
+  of_batch.active = nullptr, of_batch.progress = nullptr, of_batch.threads = 1;
+  return of_batch;
 }
 // The rays of a batch one by one, by a door's calls with one ray.
 template <class Door, class Source, class Sink, class AnyHit, class Options>
@@ -172,8 +183,7 @@ void keep_one_by_one(const Door& door, Source rays, const Sink& sink,
       plan_of_singles(by.threads, counters, by.progress), rays, sink,
       [](std::size_t) { return std::size_t{0}; },
       [&](const RayCall<Answer, typename Source::Ray>& call) {
-        Options one = by;
-        one.active = nullptr, one.progress = nullptr, one.threads = 1;
+        Options one = options_of_singles(by);
         if constexpr (requires { one.counters; }) one.counters = call.counters;
         RejectionOfRay<AnyHit> of_ray{rejected};
         for (std::size_t k = 0; k < call.size; ++k) {
