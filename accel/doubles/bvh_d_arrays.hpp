@@ -90,9 +90,6 @@ void refit_bvh_d(BvhDArrays& tree, const VertexViewD& vertices, const IndexView&
 // The kernels of the path that the options name, which are checked.
 const DoubleRayKernels& checked_kernels(const TraceOptionsD& options);
 
-// Whether all triangles count for all rays.
-bool takes_all(const TraceOptionsD& options);
-
 // As BvhD::closest() and BvhD::occluded().
 void trace_hits(const DoubleTreeView& tree, const RaySourceOf<double>& rays, const HitViewD& hits,
                 const TraceOptionsD& options);

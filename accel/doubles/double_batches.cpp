@@ -74,7 +74,7 @@ void run_shared(const RowsOfPath& rows, const DoubleTreeView& tree, DoubleBatch 
   rows.kernels.packet(tree, batch);
 }
 
-// Nearest hits of both sides, or whether there are any. Traces runs of rays that share an origin, and the rays between
+// Nearest hits, or whether there are any. Traces runs of rays that share an origin, and the rays between
 // runs. `end`: where all rays end, if that is known.
 void run_together(const RowsOfPath& rows, const DoubleTreeView& tree, const DoubleBatch& batch,
                   const Double3* end) {
@@ -96,9 +96,6 @@ void run_together(const RowsOfPath& rows, const DoubleTreeView& tree, const Doub
 
 }  // namespace
 
-bool takes_all(const TraceOptionsD& options) {
-  return options.facing == Facing::any && options.skip.first == nullptr && options.masks.empty();
-}
 const DoubleRayKernels& checked_kernels(const TraceOptionsD& options) {
   require_threads("trace", options.threads);
   checked_index("trace", "facing", options.facing, facing_names.size());
@@ -120,7 +117,7 @@ void trace_hits(const DoubleTreeView& of, const RaySourceOf<double>& given, cons
     batch.facing = options.facing, batch.skip = call.skip, batch.after = after, batch.scratch = call.scratch;
     return batch;
   };
-  if (rays.size() >= min_flying_batch && takes_all(options) && !has_after)
+  if (rays.size() >= min_flying_batch && !has_after)
     return over_calls(
         plan_of(tree, options, rays.size()), rays, HitSink<HitD>{hits},
         [&](std::size_t n) { return scratch_bytes(kernels, n); },
@@ -139,7 +136,7 @@ void trace_occluded(const DoubleTreeView& of, const RaySourceOf<double>& given,
   const DoubleTreeView tree = masked(of, options);
   const DoubleRayKernels& kernels = checked_kernels(options);
   const RowsOfPath rows{kernels, has_flights(checked_path(options.path))};
-  const bool together = rays.size() >= min_shared_point && takes_all(options);
+  const bool together = rays.size() >= min_shared_point;
   over_calls(
       plan_of(tree, options, together ? rays.size() : 0), rays, SpanSink<std::uint8_t>{occluded},
       [&](std::size_t n) { return together ? scratch_bytes(kernels, n) : std::size_t{0}; },

@@ -104,7 +104,10 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
     for (std::size_t k = 0; k < 3; ++k)
       apex_[k] = batch_.apex[static_cast<std::size_t>(frame_.axes.order[k])] * batch_.scale;
     frame_.apex_offset = frame_.past = batch_.apex_offset();
-    for (int row = 0; row < rays_.vectors; ++row) rays_.begin(batch_, row, frame_);
+    for (int row = 0; row < rays_.vectors; ++row) {
+      rays_.begin(batch_, row, frame_);
+      if (batch_.skip != nullptr) rays_.set_skipped(row, batch_.skip);
+    }
   }
   void trace_single(std::size_t index) { batch_.trace_single(index); }
   void prefetch_leaf(TreeReference leaf) { triangles_.prefetch_leaf(leaf_of(leaf)); }
@@ -114,19 +117,21 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
     const std::uint32_t first = DoubleTriangles::first_of(leaf), lanes = DoubleTriangles::lanes(first);
     const double* const numbers = triangles_.numbers(first);
     const auto size = static_cast<int>(leaf.size);
+    std::uint32_t some = lanes_but(no_primitive, first_lanes<tree_width>(leaf.size), triangles_, first);
     const Planes planes(frame_, apex_, size, [&](int k, int i) {
       using Row = Doubles<leaf_lanes<double>>;
       return Row::load(numbers + static_cast<std::uint32_t>(k) * lanes + i) * Row(batch_.scale);
     });
     std::uint32_t single[max_vectors], with_single = 0;
-    std::uint32_t hit =
-        each_met(planes, first_lanes<tree_width>(size), at.vectors, [&](int triangle, int row) {
-          const std::uint32_t undecided =
-              test_vector(planes, triangle, row, first + static_cast<std::uint32_t>(triangle));
-          if (undecided != 0)
-            single[row] = undecided | (with_single >> row & 1u ? single[row] : 0u), with_single |= 1u << row;
-          return changed_;
-        });
+    some &=
+        ~planes.plain | admitted_lanes(batch_.facing, ~0u, batch_.ends_there ? planes.away : ~planes.away);
+    std::uint32_t hit = each_met(planes, some, at.vectors, [&](int triangle, int row) {
+      const std::uint32_t undecided =
+          test_vector(planes, triangle, row, first + static_cast<std::uint32_t>(triangle));
+      if (undecided != 0)
+        single[row] = undecided | (with_single >> row & 1u ? single[row] : 0u), with_single |= 1u << row;
+      return changed_;
+    });
     for (std::uint32_t vectors = with_single; vectors != 0; vectors &= vectors - 1) {
       const int row = std::countr_zero(vectors);
       for (std::uint32_t rays = single[row] & rays_.active[row]; rays != 0; rays &= rays - 1)
@@ -154,11 +159,12 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
   std::uint32_t test_vector(const Planes& planes, int triangle, int row, std::uint32_t leaf_triangle) {
     std::uint32_t undecided = 0, certain = 0;
     const bool is_plain = (planes.plain >> triangle & 1u) != 0;
+    const std::uint32_t active = rays_for(leaf_triangle, row);
     for (int first = 0; first < W; first += N) {
       const auto& of = rays_.doubled[row];
       V x = V::load(of.slope_x + first), y = V::load(of.slope_y + first);
       V side = planes.side(triangle, x, y);
-      const std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & rays_.active[row] >> first;
+      const std::uint32_t rays = bits(side >= V(planes.bound(triangle))) & active >> first;
       if (!is_plain) {
         undecided |= rays << first;
         continue;
@@ -176,6 +182,11 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
     if (batch_.only_decides()) rays_.active[row] &= ~certain;
     return undecided;
   }
+  // The active rays that do not skip a triangle.
+  std::uint32_t rays_for(std::uint32_t leaf_triangle, int row) const {
+    if (batch_.skip == nullptr) return rays_.active[row];
+    return rays_.active[row] & ~rays_.rays_that_skip(row, triangles_.primitive(leaf_triangle));
+  }
   // A leaf, by the ray itself.
   [[gnu::noinline]] void visit_single(TreeReference leaf, int row, int lane) {
     DoubleTreeView from_there = *batch_.tree;
@@ -184,14 +195,15 @@ class DoublePacketLeaves : public PacketWalk<SharedApex::origin, NoCounters, Dou
   }
   void search_single(const DoubleTreeView& below, int row, int lane) {
     const RayD& ray = batch_.doubles[rays_.index(row, lane)];
+    const std::uint32_t skipped = batch_.skip != nullptr ? rays_.skipped[row][lane] : no_primitive;
     if (batch_.only_decides()) {
-      if (hits_any(below, ray)) rays_.active[row] &= ~(1u << lane);
+      if (hits_any(below, ray, DoubleHitRule(batch_.facing, skipped))) rays_.active[row] &= ~(1u << lane);
       return;
     }
     DoubleCandidate best = rays_.candidate(row, lane, ray);
     RayD rest = ray;
     rest.tmax = number_above(best.tmax);  // what rounds to one t is compared by its number
-    const std::uint32_t nearest = nearest_triangle_of_ray(below, rest);
+    const std::uint32_t nearest = nearest_triangle_by(below, rest, batch_.facing, skipped);
     if (nearest == no_leaf_triangle) return;
     compare_exactly(triangles_, ray, nearest, best);
     rays_.keep(row, lane, best);
@@ -246,6 +258,7 @@ constexpr std::size_t double_packet_bytes(std::size_t rays) {
       for (std::size_t i = 0; i < rays.size; ++i) rays.trace_single(i);
     }
     rays.doubles += rays.size;
+    if (rays.skip != nullptr) rays.skip += rays.size;
     if (rays.only_decides())
       rays.occluded += rays.size;
     else

@@ -232,9 +232,12 @@ inline void search(const DoubleTreeView& tree, const RayD& ray, FrameRay& frame,
 #endif
 }
 
-// Whether all triangles are there for all rays.
+// Whether all triangles are there for a ray, or for all rays of a batch.
+inline bool takes_all(const DoubleTreeView& tree, Facing facing, std::uint32_t skipped = no_primitive) {
+  return facing == Facing::any && skipped == no_primitive && tree.tree.masks.see_all();
+}
 inline bool takes_all(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  return batch.facing == Facing::any && batch.skip == nullptr && tree.tree.masks.see_all();
+  return takes_all(tree, batch.facing) && batch.skip == nullptr;
 }
 
 // The triangle that is hit nearest by the rule, from `begin` on.
@@ -257,13 +260,14 @@ inline std::uint32_t nearest_triangle(const DoubleTreeView& tree, const RayD& ra
 [[maybe_unused]] std::uint32_t nearest_triangle_of_ray(const DoubleTreeView& tree, const RayD& ray) {
   return nearest_triangle(tree, ray, ray.tmin, NoRule());
 }
+inline std::uint32_t nearest_triangle_by(const DoubleTreeView& tree, const RayD& ray, Facing facing,
+                                         std::uint32_t skipped) {
+  if (takes_all(tree, facing, skipped)) return nearest_triangle_of_ray(tree, ray);
+  return nearest_triangle(tree, ray, ray.tmin, HitsAfter<HitD>{before_all_doubles, facing, skipped});
+}
 [[maybe_unused]] HitD closest_double_of_ray(const DoubleTreeView& tree, const RayD& ray, Facing facing,
                                             std::uint32_t skipped) {
-  const bool takes_all = facing == Facing::any && skipped == no_primitive && tree.tree.masks.see_all();
-  return known_hit(DoubleTriangles(tree), ray,
-                   takes_all ? nearest_triangle_of_ray(tree, ray)
-                             : nearest_triangle(tree, ray, ray.tmin,
-                                                HitsAfter<HitD>{before_all_doubles, facing, skipped}));
+  return known_hit(DoubleTriangles(tree), ray, nearest_triangle_by(tree, ray, facing, skipped));
 }
 
 [[gnu::noinline, gnu::flatten]] bool hits_any(const DoubleTreeView& tree, const RayD& ray,

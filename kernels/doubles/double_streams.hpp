@@ -81,8 +81,11 @@ class DoubleStreamLeaves
     const std::uint32_t first = DoubleTriangles::first_of(of), lanes = DoubleTriangles::lanes(first);
     const double* const numbers = triangles_.numbers(first);
     const auto row = [&](int k) { return numbers + static_cast<std::uint32_t>(k) * lanes; };
-    const auto triangles = static_cast<int>(of.size);
-    const LeafScreenOf<double> screen(row, triangles, static_cast<double>(farthest_), power_of_two(power_));
+    const std::uint32_t triangles =
+        lanes_but(no_primitive, first_lanes<tree_width>(of.size), triangles_, first);
+    if (triangles == 0) return;
+    const LeafScreenOf<double> screen(row, static_cast<int>(of.size), static_cast<double>(farthest_),
+                                      power_of_two(power_));
     for (std::uint32_t i = 0; i < size; i += N) test_triangles(screen, triangles, first, list + i, size - i);
   }
 
@@ -97,7 +100,10 @@ class DoubleStreamLeaves
  private:
   using State = typename Screened::State;
 
-  NoRule sides() const { return {}; }
+  HitRule sides() const { return HitRule(batch_); }
+  MaskOf<V> not_skipped(std::uint32_t leaf_triangle, V skipped) const {
+    return ~(skipped == V(static_cast<double>(triangles_.primitive(leaf_triangle))));
+  }
 
   // A ray that goes on alone below a node.
   void trace_single_below(const TreeView& below, const SingleBoxes& boxes, std::uint32_t i,
@@ -108,11 +114,14 @@ class DoubleStreamLeaves
       walk_nodes(below, boxes, query, cost, [&](TreeReference leaf) { return leaves.visit(leaf, query); });
     };
     if constexpr (only_decides) {
-      AnyDouble query(ray, rays_.rows[i].tmax);
+      AnyDouble query(ray, rays_.rows[i].tmax,
+                      DoubleHitRule(batch_.facing, skipped_by(batch_, rays_.number[i])));
       search_below(query);
       if (query.found) end_ray(i);
     } else {
-      NearestDouble<NoRule, ScaledEnd> query(candidate_of(i), batch_.ends[i], NoRule(), rays_.rows[i].tmax);
+      const HitsAfter<HitD> rule{before_all_doubles, batch_.facing, skipped_by(batch_, rays_.number[i])};
+      NearestDouble<HitsAfter<HitD>, ScaledEnd> query(candidate_of(i), batch_.ends[i], rule,
+                                                      rays_.rows[i].tmax);
       search_below(query);
       keep_unscaled(i, query);
     }
@@ -142,13 +151,14 @@ class DoubleStreamLeaves
   }
 
   // A register of rays, or the first `size`, against all triangles of a leaf.
-  void test_triangles(const LeafScreenOf<double>& screen, int triangles, std::uint32_t first,
+  void test_triangles(const LeafScreenOf<double>& screen, std::uint32_t triangles, std::uint32_t first,
                       const ListEntry* list, std::uint32_t size) {
     const void* rows[N];
-    double t_lo[N];
+    double t_lo[N], skipped[N];
     for (int lane = 0; lane < N; ++lane) {
       const std::uint32_t i = index_of(list[lane]);
       rows[lane] = batch_.scaled + i, t_lo[lane] = batch_.ends[i].t_lo;
+      if (batch_.skip != nullptr) skipped[lane] = batch_.skip[rays_.number[i]];
     }
     V row[row_floats];
     load_rows(rows, row);
@@ -158,9 +168,11 @@ class DoubleStreamLeaves
     const RayLanes<V> rays{vec3(row), vec3(row + 4)};
     V length =
         multiply_add<Grade::fast>((abs(row[4]) + abs(row[5])) + abs(row[6]), V(1.0 + 0x1p-20), V(0x1p-45));
+    V skipped_by_rays(0.0);
+    if (batch_.skip != nullptr) skipped_by_rays = V::load(skipped);
     const std::uint32_t found =
-        this->classify_triangles(rays, length, screen, first_lanes<tree_width>(unsigned(triangles)), first,
-                                 list, first_lanes<N>(size), left);
+        this->classify_triangles(rays, length, screen, triangles, first, list, first_lanes<N>(size), left,
+                                 batch_.skip != nullptr ? &skipped_by_rays : nullptr);
     this->store_certain(found, left, list);
   }
 
@@ -183,13 +195,13 @@ class DoubleStreamLeaves
   }
   DoubleCandidate compared(std::uint32_t i, std::uint32_t leaf_triangle) {
     DoubleCandidate best = candidate_of(i);
-    compare_exactly(triangles_, world(i), leaf_triangle, best);
+    compare_exactly(triangles_, world(i), leaf_triangle, best, sides());
     keep_unscaled(i, best);
     best.keep(batch_.ends[i].t_lo, batch_.scaled[i].tmax, rays_.leaf_triangle[i]);
     return best;
   }
   bool is_hit(std::uint32_t i, std::uint32_t leaf_triangle) const {
-    return static_cast<bool>(hit_to_compare(triangles_, world(i), leaf_triangle));
+    return any_exact_hit(triangles_, world(i), 1u, leaf_triangle, batch_.facing);
   }
   // Nothing enters a box before −infinity.
   void end_ray(std::uint32_t i) {
@@ -225,15 +237,13 @@ void stream_doubles(const DoubleTreeView& tree, const DoubleBatch& batch) {
   DoubleStreamLeaves<only_decides> leaves(nodes, rays);
   Streams(leaves, batch.scratch).trace();
 }
-// Batches that choose triangles, and hits after others, go as single rays.
+// Hits after others are found by single rays.
 [[maybe_unused]] void closest_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = takes_all(tree, batch) && batch.after == nullptr;
-  is_plain&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)
-                                               : closest_doubles(tree, batch);
+  batch.after == nullptr&& tree.tree.root != empty_reference ? stream_doubles<false>(tree, batch)
+                                                             : closest_doubles(tree, batch);
 }
 [[maybe_unused]] void any_double_stream(const DoubleTreeView& tree, const DoubleBatch& batch) {
-  const bool is_plain = takes_all(tree, batch);
-  is_plain&& tree.tree.root != empty_reference ? stream_doubles<true>(tree, batch) : any_double(tree, batch);
+  tree.tree.root != empty_reference ? stream_doubles<true>(tree, batch) : any_double(tree, batch);
 }
 
 }  // namespace

@@ -20,15 +20,17 @@ struct DoublesTogether : TraceBatch {
   DoublesTogether(const DoubleTreeView& of, const DoubleBatch& batch)
       : tree(&of), doubles(batch.rays), hits(batch.hits) {
     size = batch.size, scratch = batch.scratch, occluded = batch.occluded;
+    facing = batch.facing, skip = batch.skip;
   }
 
   bool only_decides() const { return occluded != nullptr; }
   void trace_single(std::size_t number) const {
     const RayD& ray = doubles[number];
+    const std::uint32_t skipped = skipped_by(*this, number);
     if (only_decides())
-      occluded[number] = hits_any(*tree, ray) ? 1 : 0;
+      occluded[number] = hits_any(*tree, ray, DoubleHitRule(facing, skipped)) ? 1 : 0;
     else
-      hits[number] = closest_double_of_ray(*tree, ray, Facing::any, no_primitive);
+      hits[number] = closest_double_of_ray(*tree, ray, facing, skipped);
   }
 };
 

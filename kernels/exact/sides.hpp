@@ -36,6 +36,7 @@ inline std::uint32_t skipped_by(const Batch& batch, std::size_t i) {
   return batch.skip != nullptr ? batch.skip[i] : no_primitive;
 }
 // Leaves the lanes of triangles that the masks see, but for the skipped one; they begin with `first`.
+// no_primitive: none is skipped.
 template <class Triangles>
 inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const Triangles& triangles,
                                std::uint32_t first) {
@@ -106,14 +107,15 @@ struct HitRule {
   template <class Sign>
   Sign of_weights(Sign of_det) const {
     if (facing == Facing::any) return of_det;
-    return Sign(is_front() ? 0x80000000u : 0u);
+    using Word = typename NumberOf<Sign>::type;
+    return Sign(is_front() ? ~(~Word{0} >> 1) : Word{0});
   }
   // For a triangle that is not skipped.
-  template <class Triangles>
-  Hit admitted_hit(const Hit& hit, const Triangles& triangles, const Ray& ray,
-                   std::uint32_t leaf_triangle) const {
+  template <class AnyHit, class Triangles, class AnyRay>
+  AnyHit admitted_hit(const AnyHit& hit, const Triangles& triangles, const AnyRay& ray,
+                      std::uint32_t leaf_triangle) const {
     if (!hit || facing == Facing::any) return hit;
-    return admits(facing, side_of(triangles, ray, leaf_triangle)) ? hit : Hit();
+    return admits(facing, side_of(triangles, ray, leaf_triangle)) ? hit : AnyHit();
   }
 };
 

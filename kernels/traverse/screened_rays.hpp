@@ -13,7 +13,7 @@ namespace {
 //   end_ray(i)                           is hit, if that is all that is asked
 //   compared(i, leaf_triangle)           the best hit, if this triangle is compared with it exactly: it is kept
 //   is_hit(i, leaf_triangle)             whether the triangle is hit, exactly
-//   admitted(lanes, list, leaf_triangle)   the lanes for whose rays the triangle is admitted; if sides() chooses
+//   not_skipped(leaf_triangle, skipped)   the lanes for whose rays the triangle is there; if sides() chooses
 template <class Self, class V, bool only_decides>
 class ScreenedRays {
  protected:
@@ -22,11 +22,11 @@ class ScreenedRays {
   using State = RayState<V, only_decides>;
 
   // Without a branch on what is hit: one in three of these registers has a ray that is, and nothing foretells which.
-  // Returns the lanes with hits that are only in `left`. triangles: a bit each.
+  // Returns the lanes with hits that are only in `left`. triangles: a bit each. skipped: by each ray, or null.
   template <class Screen>
   std::uint32_t classify_triangles(const RayLanes<V>& rays, V length, const Screen& screen,
                                    std::uint32_t triangles, std::uint32_t first, const ListEntry* list,
-                                   std::uint32_t active, State& left) {
+                                   std::uint32_t active, State& left, const V* skipped = nullptr) {
     auto going = MaskOf<V>::from_bits(active), found = going & ~going;
     for (; triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
@@ -34,11 +34,11 @@ class ScreenedRays {
       self().counters().triangles(bits(going));
       const auto verdict = screen.classify(rays, length, triangle, left, self().sides());
       auto certain = verdict.certain & going, undecided = verdict.undecided & going;
-      if constexpr (decltype(self().sides())::chooses) {
-        const auto admitted_by_rule =
-            MaskOf<V>::from_bits(self().admitted(bits(certain | undecided), list, leaf_triangle));
-        certain = certain & admitted_by_rule, undecided = undecided & admitted_by_rule;
-      }
+      if constexpr (decltype(self().sides())::chooses)
+        if (skipped != nullptr) {
+          const auto is_there = self().not_skipped(leaf_triangle, *skipped);
+          certain = certain & is_there, undecided = undecided & is_there;
+        }
       self().counters().hits(bits(certain)), self().counters().undecided(bits(undecided));
       found = found | certain;
       if constexpr (only_decides) {

@@ -3,7 +3,6 @@
 // a time (Boulos, Wald, Shirley 2006: Geometric and Arithmetic Culling Methods for Entire Ray Packets).
 #pragma once
 
-#include "../exact/leaf_screen.hpp"
 #include "stream_columns.hpp"
 
 namespace raylanes {
@@ -65,7 +64,7 @@ class FewInStream {
     if (!streamable.are_of(of_.octant_)) return false;
     StreamFloats packed[row_floats];
     pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(of_.needs_.scale), packed);
-    packed[6] = length_above(vec3(packed + 3));
+    packed[6] = of_.length_or_skipped(packed, first);
     for (int k = 0; k < row_floats - 1; ++k)
       streamable.row[k].store(columns_.row[k] + first), packed[k].store(columns_.packed[k] + first);
     streamable.row[7].store(columns_.tmax + first), streamable.row[7].store(columns_.t_lo + first);

@@ -29,6 +29,7 @@ class StreamLeaves
              {.only_decides = only_decides,
               .packs_rays = true,
               .packs_lengths = screens<Test>,
+              .skip = Sides::chooses ? batch.skip : nullptr,
               .rounding = screens<Test> ? 0.0f : slab_pad,
               .scale = screen_scale<Test>(tree.bounds)},
              tree, batch),
@@ -54,10 +55,12 @@ class StreamLeaves
   [[gnu::noinline, gnu::flatten]] void visit_leaf(TreeReference leaf, const ListEntry* list,
                                                   std::uint32_t size) {
     const LeafBlock<Test::floats>& block = leaf_block<Test>(tree_, leaf);
-    const int triangles = leaf_size(leaf);
+    const int size_of_leaf = leaf_size(leaf);
+    const std::uint32_t triangles = seen(leaf, first_lanes<tree_width>(unsigned(size_of_leaf)));
     counters().leaf();
+    if (triangles == 0) return;
     at_ = leaf;
-    const auto screen = screen_of(block, triangles);
+    const auto screen = screen_of(block, size_of_leaf);
     for (std::uint32_t i = 0; i < size; i += stream_lanes)
       test_triangles(block, screen, triangles, leaf, list + i, size - i);
   }
@@ -74,8 +77,8 @@ class StreamLeaves
     const int size = leaf_size(leaf);
     float entry[tree_width];
     const OctantNode planes(block, this->octant_, this->padding_);
-    const std::uint32_t triangles =
-        this->columns_->frustum.boxes_met(planes, entry) & first_lanes<tree_width>(unsigned(size));
+    const std::uint32_t triangles = seen(
+        leaf, this->columns_->frustum.boxes_met(planes, entry) & first_lanes<tree_width>(unsigned(size)));
     if (triangles == 0) return;
     at_ = leaf;
     const LeafScreen screen(block, size, farthest_, needs_.scale);
@@ -165,16 +168,15 @@ class StreamLeaves
     Counters cost = counters();
     walk_beside<Test>(tree_, ray, query, cost);
   }
-  std::uint32_t admitted(std::uint32_t lanes, const ListEntry* list, std::uint32_t leaf_triangle) const {
-    if (batch_.skip == nullptr && tree_.masks.see_all()) return lanes;
-    const std::uint32_t primitive = TreeTriangles(tree_).primitive(leaf_triangle);
-    if (!tree_.masks.see(primitive)) return 0;
-    if (batch_.skip == nullptr) return lanes;
-    for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      if (batch_.skip[rays_.number[index_of(list[lane])]] == primitive) lanes &= ~(1u << lane);
-    }
-    return lanes;
+  // Leaves the triangles of a leaf that the masks see.
+  std::uint32_t seen([[maybe_unused]] TreeReference leaf, std::uint32_t triangles) const {
+    if constexpr (Sides::chooses)
+      return lanes_but(no_primitive, triangles, TreeTriangles(tree_), leaf_triangle_of(leaf, 0));
+    return triangles;
+  }
+  FloatMask<stream_lanes> not_skipped(std::uint32_t leaf_triangle, StreamFloats skipped) const {
+    const StreamBits primitive(TreeTriangles(tree_).primitive(leaf_triangle));
+    return ~equal_words(as<std::uint32_t>(skipped), primitive);
   }
 
   // The numbers of a leaf that all rays of a list share, for a test that has a screen.
@@ -188,7 +190,7 @@ class StreamLeaves
 
   // A register of rays, or the first `size`, against all triangles of a leaf.
   template <class Screen>
-  void test_triangles(const LeafBlock<Test::floats>& block, const Screen& screen, int triangles,
+  void test_triangles(const LeafBlock<Test::floats>& block, const Screen& screen, std::uint32_t triangles,
                       TreeReference leaf, const ListEntry* list, std::uint32_t size) {
     const void *rows[stream_lanes], *ends[stream_lanes];
     for (int lane = 0; lane < stream_lanes; ++lane) {
@@ -203,15 +205,23 @@ class StreamLeaves
     std::uint32_t active = first_lanes<stream_lanes>(size);
     if constexpr (screens<Test>) {
       const RayLanes<StreamFloats> rays{vec3(packed), vec3(packed + 3)};
-      const std::uint32_t found =
-          this->classify_triangles(rays, packed[6], screen, first_lanes<tree_width>(unsigned(triangles)),
-                                   leaf_triangle_of(leaf, 0), list, active, left);
-      this->store_certain(found, left, list);
+      this->store_certain(
+          test_screened(rays, packed[6], screen, triangles, leaf_triangle_of(leaf, 0), list, active, left),
+          left, list);
     } else if constexpr (only_decides) {
-      find_any(unpack_rays<Test>(packed), block, triangles, list, active, left);
+      find_any(unpack_rays<Test>(packed), block, std::bit_width(triangles), list, active, left);
     } else {
-      find_nearest(unpack_rays<Test>(packed), block, triangles, list, active, left);
+      find_nearest(unpack_rays<Test>(packed), block, std::bit_width(triangles), list, active, left);
     }
+  }
+  // length_or_skipped: of packed rays.
+  std::uint32_t test_screened(const RayLanes<StreamFloats>& rays, StreamFloats length_or_skipped,
+                              const LeafScreen& screen, std::uint32_t triangles, std::uint32_t leaf_triangle,
+                              const ListEntry* list, std::uint32_t active, State& left) {
+    const bool may_skip = Sides::chooses && needs_.skip != nullptr;
+    return this->classify_triangles(rays, may_skip ? length_above(rays.direction) : length_or_skipped, screen,
+                                    triangles, leaf_triangle, list, active, left,
+                                    may_skip ? &length_or_skipped : nullptr);
   }
   void test_columns(const StreamColumns& columns, std::uint32_t first, std::uint32_t lanes,
                     const LeafScreen& screen, std::uint32_t triangles, std::uint32_t leaf_triangle) {
@@ -226,7 +236,7 @@ class StreamLeaves
     }
     const ListEntry* const list = few_indices.of + first;
     const std::uint32_t found =
-        this->classify_triangles(rays, column(6), screen, triangles, leaf_triangle, list, lanes, left);
+        test_screened(rays, column(6), screen, triangles, leaf_triangle, list, lanes, left);
     if constexpr (only_decides) {
       this->store_certain(found, left, list);
     } else {

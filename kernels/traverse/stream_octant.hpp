@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "../exact/leaf_screen.hpp"
 #include "one_by_one.hpp"
 #include "stream_boxes.hpp"
 
@@ -32,13 +33,14 @@ struct WaitingList {
 
 // The work that a walk does for its leaves.
 struct StreamNeeds {
-  bool only_decides;           // any order of lists will do
-  bool shortens_rays = true;   // hits end rays, which then leave lists
-  bool packs_rays = false;     // for triangles: rays as PackedRow,
-  bool packs_lengths = false;  // with length_above() of the direction,
-  bool packs_numbers = false;  // and the number of the ray in the batch
-  float rounding = 0.0f;       // as in stream_padding()
-  float scale = 1.0f;          // of packed rays
+  bool only_decides;                    // any order of lists will do
+  bool shortens_rays = true;            // hits end rays, which then leave lists
+  bool packs_rays = false;              // for triangles: rays as PackedRow,
+  bool packs_lengths = false;           // with length_above() of the direction,
+  bool packs_numbers = false;           // and the number of the ray in the batch
+  const std::uint32_t* skip = nullptr;  // not null: what each ray skips, packed in place of lengths
+  float rounding = 0.0f;                // as in stream_padding()
+  float scale = 1.0f;                   // of packed rays
 };
 
 struct StreamColumns;
@@ -107,6 +109,15 @@ class StreamOctant {
         counters_(batch) {}
 
   const Counters& counters() const { return counters_; }
+
+  // Number 6 of packed rays, the rays of the batch from `first` on.
+  StreamFloats length_or_skipped(const StreamFloats (&packed)[row_floats], std::size_t first) const {
+    if (needs_.skip == nullptr) return length_above(vec3(packed + 3));
+    std::uint32_t skipped[stream_lanes];
+    for (std::size_t lane = 0; lane < stream_lanes; ++lane)
+      skipped[lane] = needs_.skip[first + lane < batch_size_ ? first + lane : batch_size_ - 1];
+    return as<float>(StreamBits::load(skipped));
+  }
 
   // trace(below, boxes, i, cost) for each ray of a list, from a node or a leaf on.
   template <class Trace>

@@ -120,7 +120,7 @@ class Streams {
                     void* const (&packed)[stream_lanes]) {
     StreamFloats packed_rays[row_floats];
     pack_rays(vec3(columns.origin), vec3(columns.direction), StreamFloats(of_.needs_.scale), packed_rays);
-    if (of_.needs_.packs_lengths) packed_rays[6] = length_above(vec3(packed_rays + 3));
+    if (of_.needs_.packs_lengths) packed_rays[6] = of_.length_or_skipped(packed_rays, numbers[0]);
     if (of_.needs_.packs_numbers) packed_rays[free_column] = as<float>(StreamBits::load(numbers));
     store_rows(packed, packed_rays);
   }

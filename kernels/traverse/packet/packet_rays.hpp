@@ -27,6 +27,7 @@ struct alignas(64) PacketRays {
   float tmin[max_vectors][W], tmax[max_vectors][W];  // tmax: to the best hit so far
   float t_error[max_vectors][W];                     // of these two
   const std::uint32_t* first_run[max_vectors];
+  std::uint32_t skipped[max_vectors][W];                   // the primitives that rays skip, if some skip any
   std::uint32_t occupied[max_vectors];                     // the lanes that hold rays of the packet
   std::uint32_t active[max_vectors];                       // the lanes whose rays still look for hits
   float range_x[2][max_vectors], range_y[2][max_vectors];  // the least and the largest slopes
@@ -36,6 +37,13 @@ struct alignas(64) PacketRays {
 
   std::size_t index(int row, int lane) const { return runs.index(first_run[row], lane); }
   V origin_along(int k, int, const PacketFrame& frame) const { return V(frame.apex[k]); }
+  // skip: of the rays of the batch. Lanes without a ray get what a ray of the batch has, too.
+  void set_skipped(int row, const std::uint32_t* skip) {
+    for (int lane = 0; lane < W; ++lane) skipped[row][lane] = skip[index(row, lane)];
+  }
+  std::uint32_t rays_that_skip(int row, std::uint32_t primitive) const {
+    return bits(equal_words(FloatBits<W>::load(skipped[row]), FloatBits<W>(primitive)));
+  }
   // Adds a vector with a ray in one of `lanes` at least.
   template <SharedApex apex>
   int add(const std::uint32_t* first, std::uint32_t lanes, const RayColumns& rays,
@@ -234,16 +242,6 @@ struct RaysAndHits : RaysOf<apex> {
   using RaysOf<apex>::tmax;
   float t_lo[max_vectors][W];
   std::uint32_t leaf_triangle[max_vectors][W];
-  std::uint32_t skipped[max_vectors][W];  // the primitives that rays skip, if some skip any
-
-  // skip: of the rays of the batch. Lanes without a ray get what a ray of the batch has, too.
-  void set_skipped(int row, const std::uint32_t* skip) {
-    const std::uint32_t* const run = this->first_run[row];
-    for (int lane = 0; lane < W; ++lane) skipped[row][lane] = skip[this->runs.index(run, lane)];
-  }
-  std::uint32_t rays_that_skip(int row, std::uint32_t primitive) const {
-    return bits(equal_words(FloatBits<W>::load(skipped[row]), FloatBits<W>(primitive)));
-  }
   void clear_hits(int row) {
     V::load(tmax[row]).store(t_lo[row]);
     FloatBits<W>(no_leaf_triangle).store(leaf_triangle[row]);
