@@ -3,8 +3,8 @@
 #include "../../dispatch/table/traversal.hpp"
 #include "../batch/scratch.hpp"
 #include "../batch/shared_points.hpp"
+#include "rays/searched_instances.hpp"
 #include "reach.hpp"
-#include "scene_parts.hpp"
 
 namespace raylanes {
 namespace {
@@ -37,29 +37,6 @@ constexpr std::size_t min_packets = 4096;
   }
 }
 
-// A search in one tree for a ray whose caller rejects hits of the scene.
-class AskedInTree {
- public:
-  AskedInTree(const detail::Rejection<SceneHit>& rejection, const TriangleOwners& owners, Facing facing,
-              const GeometryBatch& ray)
-      : rejection_(rejection),
-        owners_(owners),
-        asked{rejects, this, facing, ray.skip != nullptr ? *ray.skip : no_primitive, ray.after} {}
-  AskedInTree(const AskedInTree&) = delete;
-  AskedInTree& operator=(const AskedInTree&) = delete;
-
- private:
-  static bool rejects(void* search, const Hit& hit) {
-    const auto& [rejection, owners, asked] = *static_cast<const AskedInTree*>(search);
-    return rejection.rejects(rejection.function, owners.spread(hit));
-  }
-  const detail::Rejection<SceneHit>& rejection_;
-  const TriangleOwners& owners_;
-
- public:
-  const AskedOf<float> asked;
-};
-
 class SceneTracer {
  public:
   SceneTracer(const SceneQuery& query, const SceneBatch& batch) : query_(query), batch_(batch) {}
@@ -88,7 +65,8 @@ class SceneTracer {
   }
   void visit_instances(const TopLevel& top, bool has_answers) {
     top_ = &top;
-    walks_ = top.walked.entries != nullptr && has_only_a_mask();
+    walks_ = top.walked.entries != nullptr && query_.test == TriangleTest::exact &&
+             query_.choice.counters == nullptr;
     if (walks_ && are_apart(top)) return walk_singly(top);
     if (has_answers && refers_to_leaf(top.tree.root) && query_.choice.counters == nullptr)
       return visit_few(padded(top));
@@ -112,12 +90,17 @@ class SceneTracer {
     return batch_.size < from && !are_coherent(std::span(batch_.rays, batch_.size), top.tree.bounds);
   }
   void walk_singly(const TopLevel& top) const {
+    for (std::size_t i = 0; i < batch_.size; ++i) walk_ray(top.walked, i);
+  }
+  // One ray through instances, by the kernel of single rays.
+  void walk_ray(const InstancesView& instances, std::size_t i) const {
     const TraversalKernels& kernels = query_.kernels.traversal;
-    for (std::size_t i = 0; i < batch_.size; ++i)
-      if (batch_.hits != nullptr)
-        kernels.closest_of_instances(top.walked, batch_.rays[i], query_.mask, batch_.hits[i]);
-      else if (batch_.occluded[i] == 0)
-        batch_.occluded[i] = kernels.any_of_instances(top.walked, batch_.rays[i], query_.mask) ? 1 : 0;
+    const SearchedInstances by_options(query_.scene, query_.kernels, rule_of(i));
+    const InstanceSearch* const search = takes_all() ? nullptr : &by_options;
+    if (batch_.hits != nullptr)
+      kernels.closest_of_instances(instances, batch_.rays[i], query_.mask, search, batch_.hits[i]);
+    else if (batch_.occluded[i] == 0)
+      batch_.occluded[i] = kernels.any_of_instances(instances, batch_.rays[i], query_.mask, search) ? 1 : 0;
   }
   // The only leaf of a top level: most rays of a large scene come to none of a few instances.
   void visit_few(const TreeView& tree) {
@@ -150,20 +133,30 @@ class SceneTracer {
   // How far each ray goes after the answers so far.
   float* rest_of_rays(float* rest) const {
     for (std::size_t i = 0; i < batch_.size; ++i) {
-      const float end = batch_.hits != nullptr    ? tmax_after(batch_.hits[i].t)
-                        : batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()
-                                                  : std::numeric_limits<float>::infinity();
+      const float end = end_of_answer(i);
       rest[i] = batch_.rays[i].tmax < end ? batch_.rays[i].tmax : end;
     }
     return rest;
   }
+  // Where a ray's answer so far ends it.
+  float end_of_answer(std::size_t i) const {
+    if (batch_.hits != nullptr) return tmax_after(batch_.hits[i].t);
+    return batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()
+                                   : std::numeric_limits<float>::infinity();
+  }
   bool is_seen(const Instance& instance) const { return (instance.mask & query_.mask) != 0; }
 
   bool skips() const { return query_.skip.first != nullptr; }
-  bool has_only_a_mask() const {
-    return query_.test == TriangleTest::exact && query_.choice.counters == nullptr &&
-           query_.choice.facing == Facing::any && batch_.after == nullptr && batch_.rejection == nullptr &&
+  // Whether all triangles of instances that the mask sees count.
+  bool takes_all() const {
+    return query_.choice.facing == Facing::any && batch_.after == nullptr && batch_.rejection == nullptr &&
            !skips();
+  }
+  RuleInScene rule_of(std::size_t i) const {
+    RuleInScene rule{.facing = query_.choice.facing, .rejection = batch_.rejection};
+    if (batch_.after != nullptr) rule.after = batch_.after + i;
+    if (skips()) rule.skipped = skipped_at(query_.skip, batch_.numbers[i]);
+    return rule;
   }
 
   // Rays in the space of an instance.
@@ -177,7 +170,8 @@ class SceneTracer {
   void trace(const Geometry& geometry, const MemberNumbers& numbers, GeometryBatch& part) const {
     part.masks = query_.scene.masks_of(numbers.members[0].geometry, query_.mask);
     if (batch_.rejection != nullptr) {
-      const AskedInTree search(*batch_.rejection, numbers.owners, query_.choice.facing, part);
+      const AskedInTree search(batch_.rejection, numbers.owners, query_.choice.facing,
+                               part.skip != nullptr ? *part.skip : no_primitive, part.after);
       part.asked = &search.asked;
       return geometry.trace(query_, part);
     }
@@ -253,18 +247,9 @@ class SceneTracer {
     }
     InstancesView view = top_->walked;
     view.entries = entries, view.tree.root = tree_reference({0, leaf.size});
-    const TraversalKernels& kernels = query_.kernels.traversal;
     for (std::size_t k = 0; k < leaf.count; ++k) {
-      const std::uint32_t number = leaf.rays[k];
-      const Ray& ray = batch_.rays[number];
-      float end = std::numeric_limits<float>::infinity();
-      if (batch_.hits != nullptr) {
-        kernels.closest_of_instances(view, ray, query_.mask, batch_.hits[number]);
-        end = tmax_after(batch_.hits[number].t);
-      } else if (kernels.any_of_instances(view, ray, query_.mask)) {
-        batch_.occluded[number] = 1, end = -end;
-      }
-      leaf.tmax[k] = std::min(leaf.tmax[k], end);
+      walk_ray(view, leaf.rays[k]);
+      leaf.tmax[k] = std::min(leaf.tmax[k], end_of_answer(leaf.rays[k]));
     }
   }
 
@@ -335,7 +320,7 @@ class SceneTracer {
   const SceneQuery& query_;
   const SceneBatch& batch_;
   const TopLevel* top_ = nullptr;  // that is visited
-  bool walks_ = false;             // whether single rays may go through it by kernels
+  bool walks_ = false;             // whether rays may go through it one by one, by kernels
 };
 
 }  // namespace

@@ -20,6 +20,13 @@ struct InstanceEntry {
   TreeReference from;
 };
 
+// How trees of instances are searched by options that the kernel of instances does not know. `call` is passed on.
+struct InstanceSearch {
+  Hit (*closest)(const void* call, const TreeView& tree, const Ray& ray, std::uint32_t instance);
+  bool (*any)(const void* call, const TreeView& tree, const Ray& ray, std::uint32_t instance);
+  const void* call;
+};
+
 // A tree over entries, which lie in the order of its leaves.
 struct InstancesView {
   TreeView tree;

@@ -16,6 +16,7 @@
 namespace raylanes {
 
 struct InstancesView;
+struct InstanceSearch;
 
 // The instances that own the triangles of a tree over several meshes. Each of them has slots of 2^shift numbers to
 // itself.
@@ -125,10 +126,13 @@ struct TraversalKernels {
   std::uint32_t (*nearest_triangle)(const TreeView& tree, const Ray& ray);
   // CallRow::closest of the exact test for a tree with owners. Null where rays are counted.
   SceneHit (*closest_in_scene)(const TreeView& tree, const TriangleOwners& owners, const Ray& ray);
-  // One ray by the exact test through the instances whose mask has a bit in common with `mask`. A hit that comes before
-  // `hit` in the order of t, instance, primitive replaces it. Null where rays are counted.
-  void (*closest_of_instances)(const InstancesView& scene, const Ray& ray, std::uint32_t mask, SceneHit& hit);
-  bool (*any_of_instances)(const InstancesView& scene, const Ray& ray, std::uint32_t mask);
+  // One ray by the exact test through the instances whose mask has a bit in common with `mask`. search: of their trees;
+  // null: all triangles count. A hit that comes before `hit` in the order of t, instance, primitive replaces it. Null
+  // where rays are counted.
+  void (*closest_of_instances)(const InstancesView& scene, const Ray& ray, std::uint32_t mask,
+                               const InstanceSearch* search, SceneHit& hit);
+  bool (*any_of_instances)(const InstancesView& scene, const Ray& ray, std::uint32_t mask,
+                           const InstanceSearch* search);
 
   // For streams or packets of so many rays, whatever they look for.
   std::size_t scratch_bytes(TraversalMode of, std::size_t rays) const {

@@ -60,10 +60,10 @@ class RayToMap {
 template <class Query>
 class InstanceLeaves {
  public:
-  InstanceLeaves(const InstancesView& scene, const Ray& ray, std::uint32_t mask)
-      : scene_(scene), ray_(ray), mask_(mask) {}
+  InstanceLeaves(const InstancesView& scene, const Ray& ray, std::uint32_t mask, const InstanceSearch* search)
+      : scene_(scene), ray_(ray), mask_(mask), search_(search) {}
 
-  // For any ray.
+  // For any ray, and any search.
   bool visit_unusual(TreeReference leaf, Query& query) const {
     return each_entry(leaf, [&](const InstanceEntry& entry, const PlacedTree& at) {
       return enter_unusual(entry, at, query);
@@ -71,6 +71,8 @@ class InstanceLeaves {
   }
 #if defined(__AVX2__) && defined(__FMA__)
   bool visit(TreeReference leaf, Query& query) const {
+    if (search_ != nullptr) [[unlikely]]
+      return visit_unusual(leaf, query);
     return each_entry(
         leaf, [&](const InstanceEntry& entry, const PlacedTree& at) { return enter(entry, at, query); });
   }
@@ -96,9 +98,12 @@ class InstanceLeaves {
     TreeView below = *at.tree;
     below.root = entry.from;
     if constexpr (Query::only_decides)
-      return query.found = row.any(below, ray);
+      return query.found = search_ != nullptr ? search_->any(search_->call, below, ray, entry.instance)
+                                              : row.any(below, ray);
     else
-      return take(row.closest(below, ray), entry, at, query);
+      return take(search_ != nullptr ? search_->closest(search_->call, below, ray, entry.instance)
+                                     : row.closest(below, ray),
+                  entry, at, query);
   }
 
   static bool take(const Hit& hit, const InstanceEntry& entry, const PlacedTree& at, NearestInstance& query) {
@@ -175,6 +180,7 @@ class InstanceLeaves {
   const InstancesView& scene_;
   const Ray& ray_;
   const std::uint32_t mask_;
+  const InstanceSearch* const search_;
 #if defined(__AVX2__) && defined(__FMA__)
   const RayToMap to_map_{ray_};
   mutable Entered entered_;
@@ -183,22 +189,24 @@ class InstanceLeaves {
 
 template <class Query>
 [[gnu::noinline, gnu::flatten]] void walk_instances(const InstancesView& scene, const Ray& ray,
-                                                    std::uint32_t mask, Query& query) {
-  const InstanceLeaves<Query> leaves(scene, ray, mask);
+                                                    std::uint32_t mask, const InstanceSearch* search,
+                                                    Query& query) {
+  const InstanceLeaves<Query> leaves(scene, ray, mask, search);
   NoCounters counters(query);
   walk_boxes(scene.tree, ray, scene.tree.origin_share * largest_of(ray.origin), leaves, query, counters);
 }
 
 [[maybe_unused]] void closest_of_instances(const InstancesView& scene, const Ray& ray, std::uint32_t mask,
-                                           SceneHit& hit) {
+                                           const InstanceSearch* search, SceneHit& hit) {
   const float end = end_after(hit.t), own = finite_tmax(ray.tmax);
   NearestInstance query{{}, end < own ? end : own, hit};
-  walk_instances(scene, ray, mask, query);
+  walk_instances(scene, ray, mask, search, query);
   hit = query.best;
 }
-[[maybe_unused]] bool any_of_instances(const InstancesView& scene, const Ray& ray, std::uint32_t mask) {
+[[maybe_unused]] bool any_of_instances(const InstancesView& scene, const Ray& ray, std::uint32_t mask,
+                                       const InstanceSearch* search) {
   AnyInstance query{{}, finite_tmax(ray.tmax)};
-  walk_instances(scene, ray, mask, query);
+  walk_instances(scene, ray, mask, search, query);
   return query.found;
 }
 

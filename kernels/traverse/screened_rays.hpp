@@ -27,14 +27,15 @@ class ScreenedRays {
   std::uint32_t classify_triangles(const RayLanes<V>& rays, V length, const Screen& screen,
                                    std::uint32_t triangles, std::uint32_t first, const ListEntry* list,
                                    std::uint32_t active, State& left, const V* skipped = nullptr) {
+    const auto sides = self().sides();
     auto going = MaskOf<V>::from_bits(active), found = going & ~going;
     for (; triangles != 0; triangles &= triangles - 1) {
       const int triangle = std::countr_zero(triangles);
       const std::uint32_t leaf_triangle = first + static_cast<std::uint32_t>(triangle);
       self().counters().triangles(bits(going));
-      const auto verdict = screen.classify(rays, length, triangle, left, self().sides());
+      const auto verdict = screen.classify(rays, length, triangle, left, sides);
       auto certain = verdict.certain & going, undecided = verdict.undecided & going;
-      if constexpr (decltype(self().sides())::chooses)
+      if constexpr (sides.chooses)
         if (skipped != nullptr) {
           const auto is_there = self().not_skipped(leaf_triangle, *skipped);
           certain = certain & is_there, undecided = undecided & is_there;

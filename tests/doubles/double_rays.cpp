@@ -6,6 +6,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/supported_paths.hpp"
 #include "../traverse/reference/in_flight.hpp"
+#include "../traverse/reference/segment_to.hpp"
 #include "double_cases.hpp"
 
 namespace raylanes::testing {
@@ -33,6 +34,40 @@ void expect_single_calls(const BvhD& tree, const std::vector<RayD>& rays, TraceO
   }
 }
 
+// One side, without the first hits, and by masks.
+void expect_chosen(const BvhD& tree, const std::vector<RayD>& rays, const TraceOptionsD& options) {
+  std::vector<HitD> first(rays.size());
+  tree.closest(rays, first, options);
+  std::vector<std::uint32_t> masks(tree.report().triangles);
+  for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = i % 3 == 0 ? 2 : 1;
+  TraceOptionsD skips = options, turns = options, chooses = options;
+  skips.skip = first, turns.facing = rays.size() % 2 == 0 ? Facing::back : Facing::front;
+  chooses.masks = masks, chooses.mask = 1, chooses.skip = first, chooses.facing = turns.facing;
+  expect_single_calls(tree, rays, skips);
+  expect_single_calls(tree, rays, turns);
+  expect_single_calls(tree, rays, chooses);
+}
+
+// As segments from points to a light, which sees the other side.
+void expect_chosen_shadows(const BvhD& tree, const std::vector<RayD>& rays, const Double3& light,
+                           TraceOptionsD options) {
+  std::vector<Double3> points;
+  std::vector<HitD> nearest(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  for (const RayD& ray : rays) points.push_back(ray.origin);
+  tree.closest(rays, nearest, options);
+  for (const Facing side : {Facing::any, Facing::front}) {
+    options.facing = side, options.skip = nearest;
+    tree.occluded_from(light, points, occluded, {}, options);
+    if (side == Facing::front) options.facing = Facing::back;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      options.skip = nearest[i];
+      const RayD ray = segment_to<double>(light, points[i]);
+      ASSERT_EQ(occluded[i] != 0, tree.occluded(ray, options)) << i << ' ' << text_of(ray);
+    }
+  }
+}
+
 // Streams take so many rays if most begin in the box, packets runs of one origin. Below level all each case on one
 // path, all paths in turn.
 TEST(DoubleRays, large_batches_agree_with_single_calls) {
@@ -53,10 +88,8 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
           expect_single_calls(tree, rays, {.path = paths[p], .threads = rays.size() == 2150 ? 2 : 1});
         for (const std::vector<RayD>& rays :
              {aimed_rays(c.mesh, 5000, 78, 0.9), aimed_rays_from_points(c.mesh, 400, 100, 6)}) {
-          std::vector<HitD> first(rays.size());
-          tree.closest(rays, first, {.path = paths[p]});
-          expect_single_calls(tree, rays, {.path = paths[p], .skip = first});
-          expect_single_calls(tree, rays, {.path = paths[p], .facing = Facing::back});
+          expect_chosen(tree, rays, {.path = paths[p]});
+          expect_chosen_shadows(tree, rays, rays[0].origin, {.path = paths[p]});
         }
       }
       if (HasFailure()) return;

@@ -89,17 +89,42 @@ void check_instances(EveryRow& every, const TraversalKernels& rows) {
   std::vector<InstanceEntry> in_order;
   for (const std::uint32_t i : top.order) in_order.push_back(entries[i]);
   const InstancesView view{top.view(), in_order.data(), placed, sizeof(PlacedTree)};
+  constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
+  const CallRow& call = rows.call.row[exact][0];
+  // Of all instances as without a search, and of the second one alone.
+  const InstanceSearch by_rows{[](const void* row, const TreeView& below, const Ray& ray, std::uint32_t) {
+                                 return static_cast<const CallRow*>(row)->closest(below, ray);
+                               },
+                               [](const void* row, const TreeView& below, const Ray& ray, std::uint32_t) {
+                                 return static_cast<const CallRow*>(row)->any(below, ray);
+                               },
+                               &call};
+  const InstanceSearch second{
+      [](const void* row, const TreeView& below, const Ray& ray, std::uint32_t instance) {
+        return instance == 1 ? static_cast<const CallRow*>(row)->closest(below, ray) : Hit();
+      },
+      [](const void* row, const TreeView& below, const Ray& ray, std::uint32_t instance) {
+        return instance == 1 && static_cast<const CallRow*>(row)->any(below, ray);
+      },
+      &call};
   Hash hash;
   for (const Ray& ray : some_rays<float>())
     for (const std::uint32_t mask : {7u, 6u, 4u, 0u}) {
       SceneHit hit;
-      rows.closest_of_instances(view, ray, mask, hit);
+      rows.closest_of_instances(view, ray, mask, nullptr, hit);
       hash.add(hit), hash.add(hit.geometry), hash.add(hit.instance);
-      EXPECT_EQ(rows.any_of_instances(view, ray, mask), static_cast<bool>(hit));
+      EXPECT_EQ(rows.any_of_instances(view, ray, mask, nullptr), static_cast<bool>(hit));
       SceneHit nearer{hit.t, 2, 2, 0, 0, 0};
       const SceneHit before = nearer;
-      rows.closest_of_instances(view, ray, mask, nearer);
+      rows.closest_of_instances(view, ray, mask, nullptr, nearer);
       EXPECT_TRUE(!hit || same_bytes(nearer, before));
+      SceneHit searched, of_second;
+      rows.closest_of_instances(view, ray, mask, &by_rows, searched);
+      EXPECT_TRUE(same_bytes(searched, hit));
+      EXPECT_EQ(rows.any_of_instances(view, ray, mask, &by_rows), static_cast<bool>(hit));
+      rows.closest_of_instances(view, ray, mask, &second, of_second);
+      EXPECT_EQ(of_second.instance, (mask & 2) != 0 && of_second ? 1u : no_part);
+      EXPECT_EQ(rows.any_of_instances(view, ray, mask, &second), static_cast<bool>(of_second));
     }
   expect_recorded("instances", hash, "scenes");
 }

@@ -26,9 +26,9 @@ unsigned shift_of_slots(std::size_t triangles, std::size_t members) {
 }  // namespace
 
 std::uint32_t MemberNumbers::of(std::uint32_t instance, std::uint32_t primitive) const {
+  if (instance == no_part) return no_primitive;
   const Member* const member = &from(instance);
-  const bool has_it =
-      instance != no_part && member->instance == instance && primitive < member[1].first - member->first;
+  const bool has_it = member->instance == instance && primitive < member[1].first - member->first;
   return has_it ? member->first + primitive : no_primitive;
 }
 

@@ -9,6 +9,7 @@
 #include "../../queries/traced_tree.hpp"
 #include "../reach.hpp"
 #include "kept_in_scene.hpp"
+#include "searched_instances.hpp"
 
 namespace raylanes {
 
@@ -63,7 +64,9 @@ bool comes_to_others(const SceneParts& scene, const Ray& ray, float end) {
            return top.walked.entries == nullptr && may_reach(top.tree.view(), ray, end);
          });
 }
-SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask) {
+// search: by options; null: all triangles count. With options the scene has no others.
+SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ray, std::uint32_t mask,
+                        const SearchedInstances* search = nullptr) {
   const TraversalKernels& kernels = kernels_of(path).traversal;
   SceneHit hit;
   for (const auto& tree : scene.commons) {
@@ -71,21 +74,26 @@ SceneHit walked_closest(const SceneParts& scene, const Path& path, const Ray& ra
     Ray shorter;
     const Ray* rest = &ray;  // a copy that is read as vectors waits for its stores
     if (hit && tmax_after(hit.t) < ray.tmax) shorter = ray, shorter.tmax = tmax_after(hit.t), rest = &shorter;
-    const SceneHit next = kernels.closest_in_scene(*tree->view, tree->numbers().owners, *rest);
+    const SceneHit next = search != nullptr
+                              ? search->closest_in_common(*tree, *rest)
+                              : kernels.closest_in_scene(*tree->view, tree->numbers().owners, *rest);
     if (is_before(next, hit)) hit = next;
   }
   for (const TopLevel& top : scene.tops)
-    if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, hit);
+    if (top.walked.entries != nullptr) kernels.closest_of_instances(top.walked, ray, mask, search, hit);
   if (comes_to_others(scene, ray, tmax_after(hit.t)))
     trace_others(checked_query(scene, {.path = &path, .mask = mask}), {&ray, 1, &hit, nullptr});
   return hit;
 }
-bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow& row, const Ray& ray,
-                     std::uint32_t mask) {
+bool walked_occluded(const SceneParts& scene, const Path& path, const CallRow* row, const Ray& ray,
+                     std::uint32_t mask, const SearchedInstances* search = nullptr) {
   for (const auto& tree : scene.commons)
-    if (scene.sees(*tree, mask) && row.any(*tree->view, ray)) return true;
+    if (scene.sees(*tree, mask) &&
+        (search != nullptr ? search->any_in_common(*tree, ray) : row->any(*tree->view, ray)))
+      return true;
   for (const TopLevel& top : scene.tops)
-    if (top.walked.entries != nullptr && kernels_of(path).traversal.any_of_instances(top.walked, ray, mask))
+    if (top.walked.entries != nullptr &&
+        kernels_of(path).traversal.any_of_instances(top.walked, ray, mask, search))
       return true;
   std::uint8_t is_occluded = 0;
   if (comes_to_others(scene, ray, std::numeric_limits<float>::infinity()))
@@ -101,12 +109,10 @@ class KernelsOfScene {
       : scene_(scene), options_(options), tree_(quick_tree(scene, options.mask)) {
     if (tree_ == nullptr && (options.test != TriangleTest::exact || !is_walked(scene))) return;
     rows_.usual = are_default ? &default_row() : usual_row(options);
-    if (tree_ == nullptr) {
-      if (rows_.usual != nullptr) path_ = &checked_path(options.path);
-      return;
-    }
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
-    if (rows_.usual == nullptr && !names_no_instance) rows_.by_rule = ruled_row(options, rays);
+    const bool may_choose = !names_no_instance && (tree_ != nullptr || !scene.has_others());
+    if (rows_.usual == nullptr && may_choose) rows_.by_rule = ruled_row(options, rays);
+    if (rows_) path_ = &checked_path(options.path);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
   std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
@@ -131,16 +137,30 @@ class KernelsOfScene {
     }
   }
   SceneHit closest(const Ray& ray, std::size_t i) const {
-    if (tree_ == nullptr) return walked_closest(scene_, *path_, ray, options_.mask);
+    if (tree_ == nullptr)
+      return walk(i, [&](const SearchedInstances* search) {
+        return walked_closest(scene_, *path_, ray, options_.mask, search);
+      });
     const Hit hit = rows_.closest(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
     return tree_->numbers().owners.spread(hit);
   }
   bool any(const Ray& ray, std::size_t i) const {
-    if (tree_ == nullptr) return walked_occluded(scene_, *path_, *rows_.usual, ray, options_.mask);
+    if (tree_ == nullptr)
+      return walk(i, [&](const SearchedInstances* search) {
+        return walked_occluded(scene_, *path_, rows_.usual, ray, options_.mask, search);
+      });
     return rows_.any(*tree_->view, ray, options_.facing, [&] { return skipped(i); });
   }
 
  private:
+  template <class Walk>
+  std::invoke_result_t<Walk, const SearchedInstances*> walk(std::size_t i, const Walk& walk_by) const {
+    if (rows_.usual != nullptr) return walk_by(nullptr);
+    RuleInScene rule{.facing = options_.facing};
+    if (options_.skip.first != nullptr) rule.skipped = skipped_at(options_.skip, i);
+    const SearchedInstances search(scene_, kernels_of(*path_), rule);
+    return walk_by(&search);
+  }
   std::uint32_t skipped(std::size_t i) const {
     const PrimitiveView& skip = options_.skip;
     return skip.first != nullptr ? tree_->numbers().of(skip.instance(i), skip[i]) : no_primitive;
@@ -223,7 +243,7 @@ class RayDoor<Scene> {
   bool any(const Ray& ray) const {
     if (const CommonTree* const tree = quick_tree(parts_, ~0u)) [[likely]]
       return default_row().any(*tree->view, ray);
-    return is_walked(parts_) ? walked_occluded(parts_, path_in_use(), default_row(), ray, ~0u)
+    return is_walked(parts_) ? walked_occluded(parts_, path_in_use(), &default_row(), ray, ~0u)
                              : any_by(ray, {});
   }
   KernelsOfScene kernels(const TraceOptions& options, std::size_t rays, bool are_default = false) const {
