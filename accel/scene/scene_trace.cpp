@@ -138,7 +138,7 @@ class SceneTracer {
     }
     return rest;
   }
-  // Where a ray's answer so far ends it.
+  // The end of a ray after its answer so far.
   float end_of_answer(std::size_t i) const {
     if (batch_.hits != nullptr) return tmax_after(batch_.hits[i].t);
     return batch_.occluded[i] != 0 ? -std::numeric_limits<float>::infinity()

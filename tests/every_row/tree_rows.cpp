@@ -91,7 +91,7 @@ void check_instances(EveryRow& every, const TraversalKernels& rows) {
   const InstancesView view{top.view(), in_order.data(), placed, sizeof(PlacedTree)};
   constexpr auto exact = static_cast<std::size_t>(TriangleTest::exact);
   const CallRow& call = rows.call.row[exact][0];
-  // Of all instances as without a search, and of the second one alone.
+  // Searches of all instances as without one, and of the second one alone.
   const InstanceSearch by_rows{[](const void* row, const TreeView& below, const Ray& ray, std::uint32_t) {
                                  return static_cast<const CallRow*>(row)->closest(below, ray);
                                },

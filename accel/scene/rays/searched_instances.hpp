@@ -33,7 +33,7 @@ class AskedInTree {
   const AskedOf<float> asked;
 };
 
-// What a ray's call says of triangles.
+// The triangles and hits that count for a ray by the options of its call.
 struct RuleInScene {
   Facing facing = Facing::any;
   SkippedPrimitive skipped = {no_primitive, no_part};
