@@ -96,8 +96,7 @@ std::size_t count_before_shared_origin(std::span<const AnyRay> rays) {
 }
 
 template <class AnyRay, class AnyBox>
-bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box) {
-  constexpr double near = 0.02;
+bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box, double near) {
   constexpr std::size_t max_strangers = looked_at / 8;
   if (rays.size() < 2 * looked_at) return false;
   const Point diagonal = Point(box.hi) - Point(box.lo);
@@ -133,8 +132,8 @@ template std::size_t count_of_origin(std::span<const Ray>);
 template std::size_t count_of_origin(std::span<const RayD>);
 template std::size_t count_before_shared_origin(std::span<const Ray>);
 template std::size_t count_before_shared_origin(std::span<const RayD>);
-template bool are_coherent(std::span<const Ray>, const Box&);
-template bool are_coherent(std::span<const RayD>, const BoxD&);
+template bool are_coherent(std::span<const Ray>, const Box&, double);
+template bool are_coherent(std::span<const RayD>, const BoxD&, double);
 
 template <class AnyPoint, class AnyBox>
 bool is_near(const AnyPoint& point, const AnyBox& box, double most_sizes) {
@@ -320,7 +319,10 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
       return solid_angle_between(rays[k], rays[other], triangle.distance, by_origins);
     };
     // At the end of a row of a picture the next ray is far away.
-    const double share = has_point ? of_a_ray : std::min(between(k - 1), between(k + 1));
+    const double of_neighbours = std::min(between(k - 1), between(k + 1));
+    double share = has_point ? of_a_ray : of_neighbours;
+    // A row of a picture is bent, so the rectangle around it is much larger.
+    if (one_may_decide && shared == SharedApex::origin) share = std::min(of_a_ray, of_neighbours);
     double number = share / triangle.solid_angle;
     if (by_origins) number = std::min(number, all / triangle.area);
     if (number >= 0) triangles[seen++] = number;
@@ -336,8 +338,11 @@ TrianglesOfRays triangles_of_a_ray(const TreeViewOf<T>& tree, NearestTriangle<T>
 
 // Measured: from so many triangles a ray on streams take less time, and single rays where they are few.
 bool packets_pay(const TrianglesOfRays& triangles, PacketsOf kind) {
-  constexpr double of_closest = 0.35, of_any = 0.25;
-  return triangles.mean < (kind == PacketsOf::any_hits ? of_any : of_closest);
+  constexpr double of_closest = 0.35, of_any = 0.25, of_doubles = 1.5;
+  const double most = kind == PacketsOf::doubles    ? of_doubles
+                      : kind == PacketsOf::any_hits ? of_any
+                                                    : of_closest;
+  return triangles.mean < most;
 }
 
 template TrianglesOfRays triangles_of_a_ray<float>(const TreeView&, NearestTriangle<float>,

@@ -28,9 +28,9 @@ std::size_t count_before_shared_origin(std::span<const AnyRay> rays);
 std::optional<Float3> shared_end_of(std::span<const Ray> rays);
 
 // Whether rays that follow each other are neighbours, as in the rows of a picture: of some spread over them most
-// directions agree within a fiftieth, and origins within a fiftieth of the box.
+// directions agree within `near`, and origins within that share of the box's diagonal.
 template <class AnyRay, class AnyBox>
-bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box);
+bool are_coherent(std::span<const AnyRay> rays, const AnyBox& box, double near = 0.02);
 // Whether all of some rays spread over a batch pass the box by: most searches end at the root.
 template <class AnyRay, class AnyBox>
 bool pass_by(std::span<const AnyRay> rays, const AnyBox& box);

@@ -36,18 +36,23 @@ inline std::uint32_t skipped_by(const Batch& batch, std::size_t i) {
   return batch.skip != nullptr ? batch.skip[i] : no_primitive;
 }
 // Leaves the lanes of triangles that the masks see, but for the skipped one; they begin with `first`.
-// no_primitive: none is skipped.
+// no_primitive: none is skipped. Out of line, as it would be much code.
 template <class Triangles>
-inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const Triangles& triangles,
-                               std::uint32_t first) {
+[[gnu::noinline]] std::uint32_t lanes_left(std::uint32_t skipped, std::uint32_t lanes,
+                                           const Triangles& triangles, std::uint32_t first) {
   const TriangleMasks& masks = triangles.masks();
-  if (skipped == no_primitive && masks.see_all()) return lanes;
   for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const std::uint32_t primitive = triangles.primitive(first + static_cast<std::uint32_t>(lane));
     if (primitive == skipped || !masks.see(primitive)) lanes &= ~(1u << lane);
   }
   return lanes;
+}
+template <class Triangles>
+inline std::uint32_t lanes_but(std::uint32_t skipped, std::uint32_t lanes, const Triangles& triangles,
+                               std::uint32_t first) {
+  if (skipped == no_primitive && triangles.masks().see_all()) return lanes;
+  return lanes_left(skipped, lanes, triangles, first);
 }
 
 struct NoRule {

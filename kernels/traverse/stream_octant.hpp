@@ -112,7 +112,9 @@ class StreamOctant {
 
   // Number 6 of packed rays, the rays of the batch from `first` on.
   StreamFloats length_or_skipped(const StreamFloats (&packed)[row_floats], std::size_t first) const {
-    if (needs_.skip == nullptr) return length_above(vec3(packed + 3));
+    return needs_.skip == nullptr ? length_above(vec3(packed + 3)) : skipped_from(first);
+  }
+  [[gnu::noinline]] StreamFloats skipped_from(std::size_t first) const {
     std::uint32_t skipped[stream_lanes];
     for (std::size_t lane = 0; lane < stream_lanes; ++lane)
       skipped[lane] = needs_.skip[first + lane < batch_size_ ? first + lane : batch_size_ - 1];

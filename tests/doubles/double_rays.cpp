@@ -98,6 +98,39 @@ TEST(DoubleRays, large_batches_agree_with_single_calls) {
   }
 }
 
+// In rows of 16, by steps of a 300th; or side by side.
+std::vector<RayD> neighbours_of(const RayD& first, std::size_t count, bool share_origin) {
+  std::vector<RayD> rays;
+  const auto size = std::max_element(first.direction.begin(), first.direction.end(),
+                                     [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto axis = static_cast<std::size_t>(size - first.direction.begin());
+  for (std::size_t i = 0; i < count; ++i) {
+    RayD ray = first;
+    Double3& moved = share_origin ? ray.direction : ray.origin;
+    moved[(axis + 1) % 3] += static_cast<double>(i % 16) / 300 * std::abs(*size);
+    moved[(axis + 2) % 3] += static_cast<double>(i / 16) / 300 * std::abs(*size);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+// Few of them go as packets or streams, where single rays would not.
+TEST(DoubleRays, few_neighbours_agree_with_single_calls) {
+  for (const DoubleCase& c : double_cases(by_level<std::size_t>(2, 4, 12))) {
+    const BvhD tree(c.mesh.vertices, c.mesh.triangles);
+    for (const Path* path : paths_with_own_queries())
+      for (const RayD& ray : c.rays)
+        for (const std::size_t count : {32, 40, 63, 64, 270})
+          for (const bool share_origin : {false, true}) {
+            SCOPED_TRACE(c.name + " on " + path->name);
+            const std::vector<RayD> rays = neighbours_of(ray, count, share_origin);
+            expect_single_calls(tree, rays, {.path = path});
+            if (count == 64) expect_chosen(tree, rays, {.path = path});
+          }
+    if (HasFailure()) return;
+  }
+}
+
 // By the room that it takes: of 3000 triangles a ray looks for the nearest few only.
 TEST(DoubleLists, of_a_few_hits_end_the_search) {
   const DoubleMesh mesh = moved(stack_of(3000), 1, {0, 0, 0});
