@@ -59,17 +59,28 @@ void expect_closest_points(const DoubleMesh& mesh, const BvhD& tree, const Verte
   }
 }
 
-// The same rays again and again, so many that they are traced together: as streams, or as packets if they share an
-// origin.
-void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays, std::size_t count,
-                         const std::vector<std::vector<HitD>>& expected, const TraceOptionsD& options) {
+// The same rays again and again, in turns or each in a row, so many that they are traced together: as streams, or as
+// packets if they share an origin.
+void expect_hits_of_many(const BvhD& tree, const std::vector<RayD>& rays, std::size_t times, bool in_turns,
+                         const AnyQueries<double>& queries) {
+  const std::size_t count = rays.size() * times;
+  const auto place = [&](std::size_t i) { return in_turns ? i % rays.size() : i / times; };
   std::vector<RayD> many;
-  while (many.size() < count) many.insert(many.end(), rays.begin(), rays.end());
-  std::vector<HitD> hits(many.size());
-  std::vector<std::uint8_t> occluded(many.size());
+  std::vector<std::uint32_t> skips;
+  for (std::size_t i = 0; i < count; ++i) {
+    many.push_back(rays[place(i)]);
+    if (!queries.skip.empty()) skips.push_back(queries.skip[place(i)]);
+  }
+  const TraceOptionsD options{.path = queries.path,
+                              .facing = queries.facing,
+                              .skip = skips,
+                              .mask = queries.mask,
+                              .masks = queries.masks};
+  std::vector<HitD> hits(count);
+  std::vector<std::uint8_t> occluded(count);
   tree.closest(many, hits, options), tree.occluded(many, occluded, options);
-  for (std::size_t i = 0; i < many.size(); ++i) {
-    const std::vector<HitD>& of_ray = expected[i % rays.size()];
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<HitD>& of_ray = queries.expected.hits[place(i)];
     if (!same_bytes(hits[i], of_ray.empty() ? HitD() : of_ray[0]) || (occluded[i] != 0) == of_ray.empty())
       fail(std::string(options.path->name) + ": ray " + std::to_string(i) + " of many");
   }
@@ -105,10 +116,9 @@ int fuzz_doubles(const std::uint8_t* data, std::size_t size) {
   const bool flies = bytes.chance(48);
   if (flies) let_rays_fly(tree);
   const bool streams = bytes.chance(12) && mesh.triangles.size() < 20;  // integers take their time
-  if (queries.skip.empty() && !rays.empty() && (streams || share_origin || flies))
-    expect_hits_of_many(
-        tree, rays, streams ? 4100 : 80, queries.expected.hits,
-        {.path = queries.path, .facing = queries.facing, .mask = queries.mask, .masks = queries.masks});
+  const bool in_turns = bytes.chance(128);
+  if (!rays.empty() && (streams || share_origin || flies || !in_turns))
+    expect_hits_of_many(tree, rays, (streams ? 4100 : 80) / rays.size() + 1, in_turns, queries);
   expect_row(bytes, mesh, tree, queries.path);
   if (bytes.chance(40))
     expect_closest_points(mesh, tree, VertexViewD(rays.data(), rays.size(), sizeof(RayD)), queries.path);
