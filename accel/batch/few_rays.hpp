@@ -17,9 +17,9 @@ inline std::size_t batch_size_of(const TreeView& tree) {
   return tree.rays_wait ? min_flying_batch : min_batch;
 }
 
-// But from so many rays of floats on, nearest hits of rays with one origin may be a packet's. From min_columns to below
-// max_in_columns, alike rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
-inline constexpr std::size_t min_packet = 32, min_columns = 8, max_in_columns = 512, rays_of_columns = 64;
+// But from so many rays of floats on, nearest hits of rays with one origin may be a packet's. From min_columns on alike
+// rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
+inline constexpr std::size_t min_packet = 32, min_columns = 8, rays_of_columns = 64;
 
 // From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and each of them
 // finds a hit soon. is_usual: no side, skip or mask.

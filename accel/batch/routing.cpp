@@ -177,10 +177,19 @@ bool is_tiny(const Box& bounds) {
   return largest < min_size;
 }
 
+// So many rays are too many for columns, as measured: packets take those that share an origin, streams the others. Paths
+// without flights have no columns either, and gain less.
+std::size_t max_in_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
+  constexpr std::size_t sooner = 512, later = 1024, in_shared = 2048;
+  const std::span<const Ray> rays(batch.rays, batch.size);
+  const bool share_origin = rays.front().origin == rays.back().origin;
+  if (share_origin || !choice.may_fly || (batch.occluded != nullptr && are_parallel(rays))) return sooner;
+  return tree.streams_from.closest == streams_of_shared.closest ? in_shared : later;
+}
 // Whether rays are few, and the first of them alike.
 bool may_be_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   const std::span<const Ray> rays(batch.rays, batch.size);
-  return batch.size >= min_columns && batch.size < max_in_columns &&
+  return batch.size >= min_columns && batch.size < max_in_columns(tree, choice, batch) &&
          batch.size >= least_in_columns(rays, batch.occluded != nullptr, choice.by_rule == nullptr) &&
          choice.mode == TraversalMode::automatic && choice.hint != BatchHint::incoherent &&
          choice.nearest_triangle != nullptr && !choice.fixed_parts && tree.max_fused_size != 0.0f &&
