@@ -177,8 +177,8 @@ bool is_tiny(const Box& bounds) {
   return largest < min_size;
 }
 
-// So many rays are too many for columns, as measured: packets take those that share an origin, streams the others. Paths
-// without flights have no columns either, and gain less.
+// So many rays are too many for columns, as measured: packets take those that share an origin, streams the others.
+// Paths without flights have no columns either, and gain less.
 std::size_t max_in_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   constexpr std::size_t sooner = 512, later = 1024, in_shared = 2048;
   const std::span<const Ray> rays(batch.rays, batch.size);

@@ -54,7 +54,8 @@ TEST(FewRays, that_are_alike_have_the_hits_of_exact_arithmetic) {
     for (const Alike kind : {Alike::origin, Alike::end, Alike::parallel})
       for (int octant = 0; octant < 8; ++octant)
         for (const std::size_t count : {std::size_t{3}, std::size_t{8}, std::size_t{17}, std::size_t{63},
-                                        std::size_t{64}, std::size_t{150}}) {
+                                        std::size_t{64}, std::size_t{150}, std::size_t{1100}}) {
+          if (count > 1000 && octant != 3) continue;
           SCOPED_TRACE(count);
           expect_together(bvh, mesh, alike_rays(mesh, kind, octant, count, random));
           if (HasFailure()) return;
