@@ -17,7 +17,7 @@ struct BvhDArrays : NodesOfMesh {
   std::size_t leaves = 0;
   TreeFrame frame;
   BoxD mesh_bounds = empty_double_box;
-  DoubleTreeView ready;                                  // of calls with one ray; as view()
+  LastingView<DoubleTreeView> ready;                     // of calls with one ray; as view()
   mutable std::shared_ptr<const BoundaryTree> boundary;  // as TreeLeaves::boundary
 
   BvhDArrays() = default;

@@ -12,24 +12,25 @@ namespace {
 class KernelsOfDoubles {
  public:
   // `tree`: null if there are none to be used.
-  KernelsOfDoubles(const BvhDArrays* tree, const TraceOptionsD& options) : tree_(tree), options_(options) {
+  KernelsOfDoubles(const DoubleTreeView* tree, const TraceOptionsD& options)
+      : tree_(tree), options_(options) {
     if (tree != nullptr) kernels_ = &kernels_of(checked_path(options.path)).doubles;
   }
   explicit operator bool() const { return tree_ != nullptr; }
-  std::size_t batch_size() const { return batch_size_of(tree_->ready.tree); }
+  std::size_t batch_size() const { return batch_size_of(tree_->tree); }
   template <class Answer>
   bool takes(const FewRays<RayD, Answer>&) const {
     return true;
   }
   HitD closest(const RayD& ray, std::size_t i) const {
-    return kernels_->closest_of_ray(tree_->ready, ray, options_.facing, skipped_of(options_, i));
+    return kernels_->closest_of_ray(*tree_, ray, options_.facing, skipped_of(options_, i));
   }
   bool any(const RayD& ray, std::size_t i) const {
-    return kernels_->any_of_ray(tree_->ready, ray, options_.facing, skipped_of(options_, i));
+    return kernels_->any_of_ray(*tree_, ray, options_.facing, skipped_of(options_, i));
   }
 
  private:
-  const BvhDArrays* tree_;
+  const DoubleTreeView* tree_;
   const TraceOptionsD& options_;
   const DoubleRayKernels* kernels_ = nullptr;
 };
@@ -50,13 +51,16 @@ class RayDoor<BvhD> {
   bool any(const RayD& ray) const {
     return is_quick() ? in_use().any_of_ray(tree_->ready, ray, Facing::any, no_primitive) : any_by(ray, {});
   }
-  KernelsOfDoubles kernels(const TraceOptionsD& options, std::size_t rays, bool are_default = false) const {
+  [[gnu::always_inline]] KernelsOfDoubles kernels(const TraceOptionsD& options, std::size_t rays,
+                                                  bool are_default = false) const {
     const bool are_usual =
         is_quick() && (are_default || (options.threads >= 0 &&
                                        static_cast<std::size_t>(options.facing) < facing_names.size() &&
                                        options.skip.count == (options.skip.first != nullptr ? rays : 0) &&
-                                       options.after.first == nullptr && options.masks.empty()));
-    return {are_usual ? tree_ : nullptr, options};
+                                       options.after.first == nullptr));
+    if (!are_usual) return {nullptr, options};
+    const LastingView<DoubleTreeView>& all = tree_->ready;
+    return {options.masks.empty() ? &all : &masked_for_call(all, masks_of(options)), options};
   }
   HitD closest_by(const RayD& ray, const TraceOptionsD& options) const {
     HitD hit;
@@ -106,7 +110,9 @@ class RayDoor<BvhD> {
   detail::KernelsOfCalls<BvhD> kernels_of_calls(const TraceOptionsD& options) const {
     const DoubleRayKernels& kernels = checked_kernels(options);
     if (!this->kernels(options, 1)) return {};
-    return {&tree_->ready, nullptr, nullptr, kernels.closest_of_ray, kernels.any_of_ray};
+    return with_masks(detail::KernelsOfCalls<BvhD>{&tree_->ready, nullptr, nullptr, kernels.closest_of_ray,
+                                                   kernels.any_of_ray},
+                      options);
   }
 
  private:

@@ -4,9 +4,9 @@
 #include <raylanes/mesh.hpp>
 
 #include "../../dispatch/bits.hpp"
-#include "../../dispatch/table/tree_view.hpp"
 #include "../batch/array.hpp"
 #include "../batch/meters.hpp"
+#include "../batch/triangle_masks.hpp"
 #include "reference.hpp"
 
 namespace raylanes {
@@ -143,7 +143,7 @@ class BoundaryTree;
 // The leaves of a tree, and what queries make of them.
 struct TreeLeaves {
   Leaves corners;
-  TreeView ready{nullptr, nullptr, empty_reference, {}};  // what calls with one ray walk
+  LastingView<TreeView> ready{{nullptr, nullptr, empty_reference, {}}};  // what calls with one ray walk
   mutable std::shared_ptr<const BoundaryTree>
       boundary;  // of the triangles; null until a query asks, and after refit
 

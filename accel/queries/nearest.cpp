@@ -117,27 +117,27 @@ bool is_usual_but_for_rule(const TraceOptions& options) {
          static_cast<std::size_t>(options.hint) < batch_hint_names.size() && options.threads >= 0 &&
          options.counters == nullptr && static_cast<std::size_t>(options.grade) < grade_names.size();
 }
-}  // namespace
-
-const CallRow* usual_row(const TraceOptions& options) {
-  const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
-  const bool is_usual = is_usual_but_for_rule(options) && options.facing == Facing::any &&
-                        options.after.first == nullptr && options.skip.first == nullptr &&
-                        options.masks.empty() && test < std::size(triangle_tests);
-  if (!is_usual) return nullptr;
-  const KernelTable& kernels = kernels_of(checked_path(options.path));
-  const CallRow& row = kernels.traversal.call.row[test][grade];
-  return row.closest != nullptr ? &row : nullptr;
-}
-bool is_usual_kept(const TraceOptions& options, std::size_t rays) {
-  return is_usual_but_for_rule(options) && options.test == TriangleTest::exact && options.masks.empty() &&
+// And that they choose triangles by the exact test, for so many rays.
+bool has_usual_rule(const TraceOptions& options, std::size_t rays) {
+  return options.test == TriangleTest::exact &&
          static_cast<std::size_t>(options.facing) < facing_names.size() &&
          options.skip.count == (options.skip.first != nullptr ? rays : 0);
 }
-const RuledCallRow* ruled_row(const TraceOptions& options, std::size_t rays) {
-  return is_usual_kept(options, rays) && options.after.first == nullptr
-             ? &kernels_of(checked_path(options.path)).queries.plain.ruled_call
-             : nullptr;
+}  // namespace
+
+bool is_usual_kept(const TraceOptions& options, std::size_t rays) {
+  return is_usual_but_for_rule(options) && has_usual_rule(options, rays);
+}
+RowsOfCalls rows_of_calls(const TraceOptions& options, std::size_t rays) {
+  const auto test = static_cast<std::size_t>(options.test), grade = static_cast<std::size_t>(options.grade);
+  if (!is_usual_but_for_rule(options) || options.after.first != nullptr) return {};
+  const bool is_ruled =
+      options.facing != Facing::any || options.skip.first != nullptr || !options.masks.empty();
+  if (is_ruled ? !has_usual_rule(options, rays) : test >= std::size(triangle_tests)) return {};
+  const KernelTable& kernels = kernels_of(checked_path(options.path));
+  if (is_ruled) return {nullptr, &kernels.queries.plain.ruled_call};
+  const CallRow& row = kernels.traversal.call.row[test][grade];
+  return {row.closest != nullptr ? &row : nullptr};
 }
 const CallRow& default_row() {
   constexpr TraceOptions options;
@@ -169,12 +169,16 @@ namespace {
 class KernelsOfTree {
  public:
   // `ready`: null if there are none to be used.
-  KernelsOfTree(const TreeView* ready, const TraceOptions& options, std::size_t rays, bool are_default)
+  [[gnu::always_inline]] KernelsOfTree(const LastingView<TreeView>* ready, const TraceOptions& options,
+                                       std::size_t rays, bool are_default)
       : ready_(ready),
         options_(options),
         rows_(ready == nullptr ? RowsOfCalls()
-              : are_default    ? RowsOfCalls(default_row())
-                               : RowsOfCalls(options, rays)) {}
+              : are_default    ? RowsOfCalls{&default_row()}
+                               : rows_of_calls(options, rays)) {
+    if (rows_.by_rule != nullptr && !options.masks.empty())
+      ready_ = &masked_for_call(*ready, masks_of(options));
+  }
   explicit operator bool() const { return static_cast<bool>(rows_); }
   std::size_t batch_size() const { return batch_size_of(*ready_); }
   template <class Answer>
@@ -218,7 +222,8 @@ class RayDoor<TriangleTree> {
     return is_quick() ? default_row().closest(*ready_, ray) : closest_by(ray, {});
   }
   bool any(const Ray& ray) const { return is_quick() ? default_row().any(*ready_, ray) : any_by(ray, {}); }
-  KernelsOfTree kernels(const TraceOptions& options, std::size_t rays, bool are_default = false) const {
+  [[gnu::always_inline]] KernelsOfTree kernels(const TraceOptions& options, std::size_t rays,
+                                               bool are_default = false) const {
     return {is_quick() ? ready_ : nullptr, options, rays, are_default};
   }
   [[gnu::cold, gnu::noinline]] Hit closest_by(const Ray& ray, const TraceOptions& options) const {
@@ -289,10 +294,12 @@ class RayDoor<TriangleTree> {
   }
 
   detail::KernelsOfCalls<TriangleTree> kernels_of_calls(const TraceOptions& options) const {
-    const RowsOfCalls rows = is_quick() ? RowsOfCalls(options, 1) : RowsOfCalls();
-    if (rows.usual != nullptr) return {ready_, rows.usual->closest, rows.usual->any};
-    if (rows.by_rule != nullptr) return {ready_, nullptr, nullptr, rows.by_rule->closest, rows.by_rule->any};
-    return {};
+    const RowsOfCalls rows = is_quick() ? rows_of_calls(options, 1) : RowsOfCalls();
+    detail::KernelsOfCalls<TriangleTree> kernels{ready_};
+    if (rows.usual != nullptr) kernels.closest = rows.usual->closest, kernels.occluded = rows.usual->any;
+    if (rows.by_rule == nullptr) return kernels;
+    kernels.closest_by_rule = rows.by_rule->closest, kernels.occluded_by_rule = rows.by_rule->any;
+    return with_masks(std::move(kernels), options);
   }
 
  private:
@@ -305,7 +312,8 @@ class RayDoor<TriangleTree> {
     const KeptCall<float> kept(rejection, options);
     const auto* const row = &kernels_of(checked_path(options.path)).queries.plain.kept;
     const QuietFloats quiet;
-    if (ready_ != nullptr && is_usual_kept(options)) return call(KeptOfTree{row, ready_}, kept.asked);
+    if (ready_ != nullptr && is_usual_kept(options) && options.masks.empty())
+      return call(KeptOfTree{row, ready_}, kept.asked);
     const TreeView tree = checked_traversal(TreeAccess::traced(tree_), options).tree;
     return call(KeptOfTree{row, &tree}, kept.asked);
   }
@@ -328,7 +336,7 @@ class RayDoor<TriangleTree> {
   }
 
   const TriangleTree& tree_;
-  const TreeView* ready_;
+  const LastingView<TreeView>* ready_;
 };
 template class RayQueries<TriangleTree>;
 

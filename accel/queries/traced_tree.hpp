@@ -38,8 +38,10 @@ struct TreeAccess {
   static const SphereTreeArrays* arrays(const SphereTree& spheres) { return spheres.tree_.get(); }
   static const SceneParts& parts(const Scene& scene) { return scene.parts(); }
   static const SceneDParts& parts(const SceneD& scene);
-  // The tree that calls with one ray walk, until a refit; null: of an empty mesh.
-  static const TreeView* ready(const TriangleTree& tree) { return tree.ready_; }
+  // The tree that calls with one ray walk, until a refit; null: of an empty mesh. All trees set TreeLeaves::ready.
+  static const LastingView<TreeView>* ready(const TriangleTree& tree) {
+    return static_cast<const LastingView<TreeView>*>(tree.ready_);
+  }
   static Bvh copy(const Bvh& bvh);
   // As strike_triangles() in layout/refit.hpp.
   static void strike(Bvh& bvh, const Box& box, std::uint32_t first, std::uint32_t end) noexcept;
@@ -51,21 +53,13 @@ struct Traversal {
   TraversalChoice choice;
 };
 
-// The row for a call with one ray and default options; and with any. Null if these set more than test, grade and path,
-// or the test has no such row.
+// The row for a call with one ray and default options.
 const CallRow& default_row();
-const CallRow* usual_row(const TraceOptions& options);
-// The row for one ray at a time that sets facing and skip besides, of so many rays, if at all; null if there is none.
-const RuledCallRow* ruled_row(const TraceOptions& options, std::size_t rays = 1);
-// One of these for one ray at a time, of so many rays; false if options ask for more.
+// The row for one ray at a time, one of these or none.
 struct RowsOfCalls {
   const CallRow* usual = nullptr;
   const RuledCallRow* by_rule = nullptr;
 
-  RowsOfCalls() = default;
-  explicit RowsOfCalls(const CallRow& only) : usual(&only) {}
-  RowsOfCalls(const TraceOptions& options, std::size_t rays)
-      : usual(usual_row(options)), by_rule(usual == nullptr ? ruled_row(options, rays) : nullptr) {}
   explicit operator bool() const { return usual != nullptr || by_rule != nullptr; }
   // skipped() is the primitive that is not there for the ray.
   template <class Skipped>
@@ -77,7 +71,10 @@ struct RowsOfCalls {
     return usual != nullptr ? usual->any(tree, ray) : by_rule->any(tree, ray, facing, skipped());
   }
 };
-// Whether a call whose caller rejects hits sets no more than facing, skip, after, grade and path.
+// The row for so many rays if options set no more than test, grade and path, or by the exact test facing, skip and
+// masks besides. With masks, the tree's view has them. False if options ask for more, or the test has no row.
+RowsOfCalls rows_of_calls(const TraceOptions& options, std::size_t rays);
+// Whether a call whose caller rejects hits sets no more than facing, skip, masks, after, grade and path.
 bool is_usual_kept(const TraceOptions& options, std::size_t rays = 1);
 
 // Throws std::invalid_argument where an option is wrong, or trees do not take the test.

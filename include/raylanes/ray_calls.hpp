@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <raylanes/numbers.hpp>
 #include <raylanes/queries.hpp>
@@ -21,6 +22,7 @@ struct KernelsOfCalls {
   bool (*occluded)(const View&, const Ray&) = nullptr;
   Hit (*closest_by_rule)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
   bool (*occluded_by_rule)(const View&, const Ray&, Facing, std::uint32_t) = nullptr;
+  std::shared_ptr<const View> masked = nullptr;  // `view`, if options have masks
 };
 
 }  // namespace detail

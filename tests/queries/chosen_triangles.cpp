@@ -1,4 +1,5 @@
 // The sides and primitives that callers choose: what names them, in which runs of a batch, and what is refused.
+#include "masked_mesh.hpp"
 #include "worlds/worlds.hpp"
 
 namespace raylanes::testing {
@@ -58,6 +59,48 @@ TYPED_TEST(Chosen, skip_is_a_view_of_any_records) {
   expect_found("hits", first), expect_found("a view of hits", HitRecords<HitOf<T>>(first));
   expect_found("indices", indices), expect_found("closest points", points);
   expect_found("bytes", PrimitiveView(odd.data() + 1, rays.size(), 7));
+}
+
+// A thread's calls to two trees in turn, by masks that differ, before and after a refit.
+TYPED_TEST(Chosen, masks_of_calls_are_those_of_tree_and_call) {
+  using T = TypeParam;
+  const Mesh soup = triangle_soup(by_level(300), 0.5f, 174);
+  const auto rays = rays_of<T>(aimed_rays(soup, by_level(200), 2, 175));
+  std::array meshes{mesh_of<T>(soup), mesh_of<T>(triangle_soup(by_level(300), 0.5f, 176))};
+  std::array trees{tree_of<T>(meshes[0]), tree_of<T>(meshes[1])};
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t i = 0; i + 5 < meshes[0].triangles.size(); ++i) words.push_back(1u << i % 3);
+  const auto expect_seen = [&] {
+    std::vector<BvhOf<T>> seen;
+    std::vector<TraceOptionsOf<T>> asked;
+    std::vector<decltype(trees[0].calls())> calls;
+    for (const std::uint32_t mask : {1u, 6u, 0u})
+      for (std::size_t k = 0; k < 2; ++k) {
+        seen.push_back(tree_of<T>(seen_by(meshes[k], words, mask)));
+        auto& options = asked.emplace_back();
+        options.masks = words, options.mask = mask;
+        calls.push_back(trees[k].calls(options));
+      }
+    std::vector<HitOf<T>> expected, found, called;
+    for (const auto& ray : rays)
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        expected.push_back(seen[k].closest(ray)), called.push_back(calls[k].closest(ray));
+        found.push_back(trees[k % 2].closest(ray, asked[k]));
+        const bool is_hit = static_cast<bool>(expected.back());
+        EXPECT_TRUE(trees[k % 2].occluded(ray, asked[k]) == is_hit && calls[k].occluded(ray) == is_hit);
+      }
+    EXPECT_TRUE(same_bytes(found, expected) && same_bytes(called, expected));
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      std::vector<HitOf<T>> few(7), few_expected(7);
+      seen[k].closest(std::span(rays).first(7), few_expected);
+      trees[k % 2].closest(std::span(rays).first(7), few, asked[k]);
+      EXPECT_TRUE(same_bytes(few, few_expected));
+    }
+  };
+  expect_seen();
+  std::swap(meshes[0], meshes[1]);
+  for (std::size_t k = 0; k < 2; ++k) trees[k].refit(meshes[k].vertices, meshes[k].triangles);
+  expect_seen();
 }
 
 TYPED_TEST(Chosen, others_are_refused) {

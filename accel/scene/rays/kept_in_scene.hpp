@@ -15,7 +15,7 @@ struct KeptInCommon {
                const TraceOptions& options)
       : rejection_(rejection), path_(checked_path(options.path)) {
     const bool names_instance = options.skip.first == nullptr || options.skip.to_instance != 0;
-    const bool is_usual = names_instance && is_usual_kept(options);
+    const bool is_usual = names_instance && is_usual_kept(options) && options.masks.empty();
     const CommonTree* const seen = is_usual ? quick_tree(scene, options.mask) : nullptr;
     if (seen == nullptr) return;
     require_after_in_scene(options, 1);

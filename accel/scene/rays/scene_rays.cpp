@@ -108,10 +108,10 @@ class KernelsOfScene {
   KernelsOfScene(const SceneParts& scene, const TraceOptions& options, std::size_t rays, bool are_default)
       : scene_(scene), options_(options), tree_(quick_tree(scene, options.mask)) {
     if (tree_ == nullptr && (options.test != TriangleTest::exact || !is_walked(scene))) return;
-    rows_.usual = are_default ? &default_row() : usual_row(options);
+    rows_ = are_default ? RowsOfCalls{&default_row()} : rows_of_calls(options, rays);
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
     const bool may_choose = !names_no_instance && (tree_ != nullptr || !scene.has_others());
-    if (rows_.usual == nullptr && may_choose) rows_.by_rule = ruled_row(options, rays);
+    if (!may_choose || !options.masks.empty()) rows_.by_rule = nullptr;
     if (rows_) path_ = &checked_path(options.path);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
