@@ -19,7 +19,7 @@ inline std::size_t batch_size_of(const TreeView& tree) {
 
 // But from so many rays of floats on, nearest hits of rays with one origin may be a packet's. From min_columns on alike
 // rays go as columns (kernels/traverse/stream_few.hpp), so many at a time: measured.
-inline constexpr std::size_t min_packet = 32, min_columns = 8, rays_of_columns = 64;
+inline constexpr std::size_t min_packet = 32, min_columns = 8, rays_of_columns = min_batch;
 
 // From how many rays on alike ones go as columns: measured. Parallel rays, as to a sun, are spread, and each of them
 // finds a hit soon. is_usual: no side, skip or mask.
@@ -94,8 +94,8 @@ class FewRays {
  public:
   // are_default: as are_defaults() of the options. limit: so many rays are many.
   template <class Options>
-  FewRays(const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count, const Options& options,
-          bool are_default, std::size_t limit)
+  [[gnu::always_inline]] FewRays(const RayRecords<AnyRay>& rays, Answer* answers, std::size_t count,
+                                 const Options& options, bool are_default, std::size_t limit)
       : rays_(static_cast<const AnyRay*>(rays.first)), answers_(answers), size_(rays.count) {
     if (std::is_same_v<AnyRay, RayD> && !only_decides) limit = std::min(limit, min_flying_batch);
     const bool is_plain = size_ < std::max(limit, min_parallel) && count == size_ && answers != nullptr &&
@@ -107,9 +107,9 @@ class FewRays {
   }
   explicit operator bool() const { return rays_ != nullptr; }
   // Whether they may be better off together: rays of floats.
-  bool may_be_packet(const Box& box, bool is_usual) const {
+  bool may_be_packet(const Box& box, bool is_usual, bool may_be_alike) const {
     if (!only_decides && size_ >= min_packet && rays_[0].origin == rays_[size_ - 1].origin) return true;
-    return fill_columns(is_usual) && are_alike(some(), box);
+    return may_be_alike && fill_columns(is_usual) && are_alike(some(), box);
   }
   bool may_be_columns() const { return size_ <= rays_of_columns && fill_columns(true); }
   Answer* answers() const { return answers_; }

@@ -19,7 +19,7 @@ class KernelsOfDoubles {
   explicit operator bool() const { return tree_ != nullptr; }
   std::size_t batch_size() const { return batch_size_of(tree_->tree); }
   template <class Answer>
-  bool takes(const FewRays<RayD, Answer>&) const {
+  bool takes(const FewRays<RayD, Answer>&, bool) const {
     return true;
   }
   HitD closest(const RayD& ray, std::size_t i) const {

@@ -182,8 +182,8 @@ class KernelsOfTree {
   explicit operator bool() const { return static_cast<bool>(rows_); }
   std::size_t batch_size() const { return batch_size_of(*ready_); }
   template <class Answer>
-  bool takes(const FewRays<Ray, Answer>& few) const {
-    return !few.may_be_packet(ready_->bounds, rows_.by_rule == nullptr);
+  bool takes(const FewRays<Ray, Answer>& few, bool may_be_alike) const {
+    return !few.may_be_packet(ready_->bounds, rows_.by_rule == nullptr, may_be_alike);
   }
   template <class Answer>
   bool trace_alike(const FewRays<Ray, Answer>& few) const {

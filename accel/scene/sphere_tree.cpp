@@ -204,7 +204,7 @@ class KernelsOfSpheres {
   explicit operator bool() const { return spheres_ != nullptr; }
   std::size_t batch_size() const { return min_batch; }
   template <class Answer>
-  bool takes(const FewRays<Ray, Answer>&) const {
+  bool takes(const FewRays<Ray, Answer>&, bool) const {
     return true;
   }
   Hit closest(const Ray& ray, std::size_t i) const { return first(ray, i, false); }

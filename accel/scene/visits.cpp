@@ -81,7 +81,8 @@ GeometryBatch part_of(const GeometryBatch& batch, std::size_t first, std::size_t
 
 // Whether packets take less time than rays one by one, as measured: rays are as dense as primitives, or half of the
 // neighbours of a sample hit the same one.
-bool packets_pay(const BoundedTreeArrays& tree, const LeafCallback& test, const GeometryBatch& batch) {
+bool packets_visit_sooner(const BoundedTreeArrays& tree, const LeafCallback& test,
+                          const GeometryBatch& batch) {
   if (tree.size <= 8 * batch.size) return true;
   const std::size_t pairs = std::clamp<std::size_t>(batch.size / 128, 8, 32), step = batch.size / pairs | 1;
   std::size_t hit = 0, together = 0;
@@ -96,7 +97,8 @@ bool packets_pay(const BoundedTreeArrays& tree, const LeafCallback& test, const 
 void visit_part(const BoundedTreeArrays& tree, const QueryKernels& row, const LeafCallback& test,
                 const GeometryBatch& batch, bool share_origin, void* scratch) {
   // Rays that meet many boxes find their hits soonest if each goes to its nearest leaf first.
-  if (test.alone != nullptr && batch.hits != nullptr && !(share_origin && packets_pay(tree, test, batch)))
+  if (test.alone != nullptr && batch.hits != nullptr &&
+      !(share_origin && packets_visit_sooner(tree, test, batch)))
     return test.alone(test.context, batch);
   if (tree.overlaps && !share_origin && batch.hits != nullptr && batch.counters == nullptr) {
     for (std::size_t i = 0; i < batch.size; ++i) VisitOfOne{tree, test, part_of(batch, i, 1)}.trace(row);

@@ -56,12 +56,16 @@ class RayQueries {
   /// Throws what closest(ray) throws, and std::invalid_argument if hits.count is not rays.count, hits overlap rays
   /// or each other, or a view of some elements is null. A call that throws has written nothing; but on several threads
   /// std::bad_alloc may leave some hits written.
-  void closest(Rays rays, Hits hits, const Options& options = {}) const;
+  void closest(const Rays& rays, const Hits& hits, const Options& options) const;
+  /// Finds the nearest hit of each ray by default options, on the active path. Few rays take less time so.
+  void closest(const Rays& rays, const Hits& hits) const;
   /// Finds the nearest hit of each ray, given as one array per number.
   void closest(const Columns& rays, Hits hits, const Options& options = {}) const;
   /// Sets occluded[i] to 1 if the segment of ray i hits anything, else to 0.
   /// Memory, inactive rays and exceptions are as in closest() of many rays.
-  void occluded(Rays rays, Occluded occluded, const Options& options = {}) const;
+  void occluded(const Rays& rays, Occluded occluded, const Options& options) const;
+  /// Sets occluded[i] for each ray by default options, on the active path.
+  void occluded(const Rays& rays, Occluded occluded) const;
   /// Sets occluded[i] for each ray, given as one array per number.
   void occluded(const Columns& rays, Occluded occluded, const Options& options = {}) const;
 

@@ -21,7 +21,8 @@ namespace raylanes {
 //   kernels(options, rays, are_default)      closest(ray, i) and any(ray, i) for so many rays one by one, of which each
 //                                            may skip a primitive; converts to false if options ask for more.
 //                                            are_default: as are_defaults() of the options. Batches from batch_size()
-//                                            rays on are better traced as one, and so are FewRays that it does not take
+//                                            rays on are better traced as one, and so are FewRays it does not take.
+//                                            takes(few, false): they are not alike
 //   trace_alike(few)                         of those kernels, by default options: false if rays are not alike. May be
 //                                            missing
 //   kept_at_once()                           KeptCalls by default options; may be missing
@@ -41,9 +42,13 @@ template <bool are_default, class Door, class AnyRay, class Answer, class Option
   if (!kernels) return false;
   const FewRays<AnyRay, Answer> few(rays, answers, count, options, are_default, kernels.batch_size());
   if (!few) return false;
+  bool may_be_alike = true;
   if constexpr (are_default && requires { kernels.trace_alike(few); })
-    if (few.may_be_columns() && kernels.trace_alike(few)) return true;
-  if (!kernels.takes(few)) return false;
+    if (few.may_be_columns()) {
+      if (kernels.trace_alike(few)) return true;
+      may_be_alike = false;
+    }
+  if (!kernels.takes(few, may_be_alike)) return false;
   few.trace([&](const AnyRay& ray, std::size_t i) {
     if constexpr (std::is_same_v<Answer, std::uint8_t>)
       return kernels.any(ray, i);
@@ -94,20 +99,36 @@ bool RayQueries<Tree>::occluded(const Ray& ray, const Options& options) const {
 }
 
 template <class Tree>
-void RayQueries<Tree>::closest(Rays rays, Hits hits, const Options& options) const {
+void RayQueries<Tree>::closest(const Rays& rays, const Hits& hits, const Options& options) const {
   const RayDoor<Tree> door(self());
   if (answer_any_few(door, rays, HitSink<Hit>{hits}.in_place(), hits.count, options)) return;
   door.trace(source_of(rays, options), hits, options);
+}
+template <class Tree>
+void RayQueries<Tree>::closest(const Rays& rays, const Hits& hits) const {
+  static constexpr Options usual;
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kernels(usual, 1); })
+    if (answer_few<true>(door, rays, HitSink<Hit>{hits}.in_place(), hits.count, usual)) return;
+  door.trace(source_of(rays, usual), hits, usual);
 }
 template <class Tree>
 void RayQueries<Tree>::closest(const Columns& rays, Hits hits, const Options& options) const {
   RayDoor<Tree>(self()).trace(source_of(rays, options), hits, options);
 }
 template <class Tree>
-void RayQueries<Tree>::occluded(Rays rays, Occluded occluded, const Options& options) const {
+void RayQueries<Tree>::occluded(const Rays& rays, Occluded occluded, const Options& options) const {
   const RayDoor<Tree> door(self());
   if (answer_any_few(door, rays, occluded.data(), occluded.size(), options)) return;
   door.trace(source_of(rays, options), occluded, options);
+}
+template <class Tree>
+void RayQueries<Tree>::occluded(const Rays& rays, Occluded occluded) const {
+  static constexpr Options usual;
+  const RayDoor<Tree> door(self());
+  if constexpr (requires { door.kernels(usual, 1); })
+    if (answer_few<true>(door, rays, occluded.data(), occluded.size(), usual)) return;
+  door.trace(source_of(rays, usual), occluded, usual);
 }
 template <class Tree>
 void RayQueries<Tree>::occluded(const Columns& rays, Occluded occluded, const Options& options) const {

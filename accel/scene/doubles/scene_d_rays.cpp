@@ -59,7 +59,7 @@ struct CallsInSceneD {
   explicit operator bool() const { return query.has_value(); }
   static std::size_t batch_size() { return min_flying_batch; }
   template <class Answer>
-  bool takes(const FewRays<RayD, Answer>&) const {
+  bool takes(const FewRays<RayD, Answer>&, bool) const {
     return true;
   }
   SceneHitD closest(const RayD& ray, std::size_t i) const {

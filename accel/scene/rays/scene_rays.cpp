@@ -112,14 +112,14 @@ class KernelsOfScene {
     const bool names_no_instance = options.skip.first != nullptr && options.skip.to_instance == 0;
     const bool may_choose = !names_no_instance && (tree_ != nullptr || !scene.has_others());
     if (!may_choose || !options.masks.empty()) rows_.by_rule = nullptr;
-    if (rows_) path_ = &checked_path(options.path);
+    if (tree_ == nullptr && rows_) path_ = &checked_path(options.path);
   }
   explicit operator bool() const { return static_cast<bool>(rows_); }
   std::size_t batch_size() const { return tree_ != nullptr ? batch_size_of(*tree_->view) : min_list; }
   template <class Answer>
-  bool takes(const FewRays<Ray, Answer>& few) const {
-    return tree_ != nullptr ? !few.may_be_packet(tree_->view->bounds, rows_.by_rule == nullptr)
-                            : !scene_.has_others();
+  bool takes(const FewRays<Ray, Answer>& few, bool may_be_alike) const {
+    if (tree_ == nullptr) return !scene_.has_others();
+    return !few.may_be_packet(tree_->view->bounds, rows_.by_rule == nullptr, may_be_alike);
   }
   template <class Answer>
   bool trace_alike(const FewRays<Ray, Answer>& few) const {
