@@ -182,9 +182,11 @@ bool is_tiny(const Box& bounds) {
 std::size_t max_in_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
   constexpr std::size_t sooner = 512, later = 1024, in_shared = 2048;
   const std::span<const Ray> rays(batch.rays, batch.size);
-  const bool share_origin = rays.front().origin == rays.back().origin;
-  if (share_origin || !choice.may_fly || (batch.occluded != nullptr && are_parallel(rays))) return sooner;
-  return tree.streams_from.closest == streams_of_shared.closest ? in_shared : later;
+  const bool only_decides = batch.occluded != nullptr,
+             share_origin = rays.front().origin == rays.back().origin;
+  if (share_origin || !choice.may_fly || (only_decides && are_parallel(rays))) return sooner;
+  if (tree.streams_from.closest == streams_of_shared.closest) return in_shared;
+  return only_decides ? sooner : later;
 }
 // Whether rays are few, and the first of them alike.
 bool may_be_columns(const TreeView& tree, const TraversalChoice& choice, const TraceBatch& batch) {
