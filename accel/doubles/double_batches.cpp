@@ -79,8 +79,8 @@ void run_shared(const RowsOfPath& rows, const DoubleTreeView& tree, DoubleBatch 
   rows.kernels.packet(tree, batch);
 }
 
-// Nearest hits, or whether there are any. Traces runs of rays that share an origin, and the rays between
-// runs. `end`: where all rays end, if that is known.
+// Nearest hits, or whether there are any. Traces runs of rays that share an origin, and the rays between runs. `end`:
+// where all rays end, if that is known.
 void run_together(const RowsOfPath& rows, const DoubleTreeView& tree, const DoubleBatch& batch,
                   const Double3* end) {
   if (end != nullptr && batch.size >= min_shared_point)

@@ -94,9 +94,12 @@ class SceneTracer {
   }
   // One ray through instances, by the kernel of single rays.
   void walk_ray(const InstancesView& instances, std::size_t i) const {
-    const TraversalKernels& kernels = query_.kernels.traversal;
+    if (takes_all()) return walk_ray(instances, i, nullptr);
     const SearchedInstances by_options(query_.scene, query_.kernels, rule_of(i));
-    const InstanceSearch* const search = takes_all() ? nullptr : &by_options;
+    walk_ray(instances, i, &by_options);
+  }
+  void walk_ray(const InstancesView& instances, std::size_t i, const InstanceSearch* search) const {
+    const TraversalKernels& kernels = query_.kernels.traversal;
     if (batch_.hits != nullptr)
       kernels.closest_of_instances(instances, batch_.rays[i], query_.mask, search, batch_.hits[i]);
     else if (batch_.occluded[i] == 0)
